@@ -1,0 +1,1 @@
+#include "dem/near_pairs.h"

@@ -1,0 +1,31 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "dem/scene/bed.h"
+
+namespace granrad {
+
+/// Two particles whose surfaces are closer than the gap asked for. i < j.
+struct NearPair {
+  std::int32_t i, j;
+  double distance_m;  ///< between the centres (nearest periodic image)
+};
+
+/// A particle and a wall. The distance is from the centre to the nearest point of the wall.
+struct NearWall {
+  std::int32_t i;
+  std::int32_t wall;  ///< index into Bed::walls
+  double distance_m;
+};
+
+struct NearPairs {
+  std::vector<NearPair> particles;  ///< sorted by (i, j)
+  std::vector<NearWall> walls;      ///< sorted by (i, wall); each wall once per particle
+};
+
+/// All pairs with surface gap (distance - r_i - r_j, or distance - r_i) <= max_gap_m, by a cell list.
+/// Walls without contact and shutters that are open at bed.time_s are left out. Cost O(N) for similar radii.
+NearPairs near_pairs(const Bed& bed, double max_gap_m);
+
+}  // namespace granrad

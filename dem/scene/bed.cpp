@@ -1,0 +1,56 @@
+#include "dem/scene/bed.h"
+
+#include <algorithm>
+
+#include "dem/scene/constants.h"
+
+namespace granrad {
+
+std::size_t Bed::add(const Vec3& position, const Vec3& velocity, double radius, double temperature,
+                     std::int32_t material_index) {
+  id.push_back(next_id++);
+  position_m.push_back(position);
+  velocity_m_s.push_back(velocity);
+  angular_velocity_rad_s.push_back({});
+  radius_m.push_back(radius);
+  temperature_K.push_back(temperature);
+  radiative_heat_W.push_back(0);
+  material.push_back(material_index);
+  return id.size() - 1;
+}
+
+void Bed::remove_unless(const std::vector<char>& keep) {
+  std::erase_if(contacts, [&](const ContactMemory& c) {
+    const auto gone = [&](std::int64_t particle_id) {
+      const auto index = index_of(particle_id);
+      return index < 0 || !keep[index];
+    };
+    return gone(c.first) || (c.second >= 0 && gone(c.second));
+  });
+  const auto compact = [&](auto& column) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < keep.size(); ++i)
+      if (keep[i]) column[kept++] = column[i];
+    column.resize(kept);
+  };
+  compact(position_m);
+  compact(velocity_m_s);
+  compact(angular_velocity_rad_s);
+  compact(radius_m);
+  compact(temperature_K);
+  compact(radiative_heat_W);
+  compact(material);
+  compact(id);
+}
+
+std::int64_t Bed::index_of(std::int64_t particle_id) const {
+  const auto at = std::lower_bound(id.begin(), id.end(), particle_id);
+  return at != id.end() && *at == particle_id ? at - id.begin() : -1;
+}
+
+double mass_kg(const Bed& bed, std::size_t i) {
+  const double r = bed.radius_m[i];
+  return 4.0 / 3.0 * pi * r * r * r * bed.materials[bed.material[i]].density_kg_m3;
+}
+
+}  // namespace granrad

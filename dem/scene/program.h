@@ -1,0 +1,37 @@
+#pragma once
+#include <functional>
+#include <string>
+
+namespace granrad {
+
+/// Version and git commit this binary was built from.
+const char* program_version();
+const char* program_git_sha();
+
+/// Runs a program's body and turns its errors into messages on stderr and the exit codes of error.h;
+/// an interrupt caught by `install_signal_handlers` ends as 130 (SIGINT) or 143 (SIGTERM).
+int run_program(const std::string& name, const std::function<int()>& body);
+
+/// After this, SIGINT and SIGTERM only set a flag; the time loop looks at it, saves and returns.
+/// A second signal ends the process at once.
+void install_signal_handlers();
+/// 0, or the signal number received.
+int interrupt_signal();
+
+/// Progress with ETA on stderr: a line that rewrites itself on a terminal, else a line every 30 s or so.
+/// Quiet prints nothing. Costs a clock read per call.
+class Progress {
+ public:
+  Progress(std::string what, double total, bool quiet);
+  ~Progress();
+  void update(double done, const std::string& detail = "");
+  void finish(const std::string& detail = "");
+
+ private:
+  void print(double done, const std::string& detail, bool last);
+  std::string what_;
+  double total_, started_s_, printed_s_ = -1e9;
+  bool quiet_, terminal_, finished_ = false;
+};
+
+}  // namespace granrad

@@ -1,0 +1,1 @@
+#include "fit/html_report.h"

@@ -1,0 +1,37 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+
+#include "raytrace/enclosure.h"
+
+namespace granrad {
+
+/// Where a ray ends.
+struct Hit {
+  std::int32_t surface;  ///< surface number of the enclosure; open_surface() when nothing is met; -1: leaked
+  double distance_m;     ///< infinite for the surroundings
+  Vec3 position_m;       ///< on the surface (for spheres projected onto it in double precision)
+  Vec3 normal;           ///< unit, towards the void
+};
+
+/// First hits in an enclosure of spheres and walls, by Embree user geometry tested in double precision.
+/// Geometry is recentred and divided by the mean radius before it reaches single precision; planar polygons
+/// are intersected analytically, meshes as ROBUST triangles. The only user of rtcore.h.
+class EmbreeTracer {
+ public:
+  explicit EmbreeTracer(const Enclosure& enclosure, int threads = 0);
+  ~EmbreeTracer();
+  EmbreeTracer(const EmbreeTracer&) = delete;
+  EmbreeTracer& operator=(const EmbreeTracer&) = delete;
+
+  /// Follows a ray from `origin` (on surface `from`, or anywhere with from = -1) along unit `direction`.
+  /// A convex surface never hits itself, by identity; a ray that starts inside another sphere hits it at
+  /// distance zero; a ray that meets the back of a wall is leaked. Thread-safe.
+  Hit first_hit(const Vec3& origin, const Vec3& direction, std::int32_t from) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace granrad

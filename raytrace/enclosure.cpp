@@ -1,0 +1,1 @@
+#include "raytrace/enclosure.h"

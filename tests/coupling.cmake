@@ -1,0 +1,1 @@
+# tests of coupling: granrad_test(shelf/name libraries...)

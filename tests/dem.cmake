@@ -1,0 +1,1 @@
+# tests of dem: granrad_test(shelf/name libraries...)

@@ -1,0 +1,1 @@
+# tests of feed: granrad_test(shelf/name libraries...)

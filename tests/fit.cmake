@@ -1,0 +1,1 @@
+# tests of fit: granrad_test(shelf/name libraries...)

@@ -1,0 +1,1 @@
+# tests of lines: granrad_test(shelf/name libraries...)

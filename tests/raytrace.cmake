@@ -1,0 +1,1 @@
+# tests of raytrace: granrad_test(shelf/name libraries...)
