@@ -20,9 +20,16 @@ struct HitCounts {
   std::vector<std::int64_t> hits;      ///< [nnz]
   std::vector<std::int64_t> launched;  ///< [surfaces]
   std::vector<double> area_m2;         ///< [surfaces]
-  std::vector<double> variance_factor; ///< empty, or [surfaces]: variance of F relative to binomial (QMC replicates)
-  std::int64_t leaked = 0;             ///< rays that met the back of a wall or were lost
-  double mean_chord_m = 0;             ///< area-weighted mean free length of a ray over all surfaces
+  /// Variance of a count relative to binomial, found from independent replicates of low-discrepancy rays:
+  /// either per surface that launches, [surfaces], or by the size of the count, [b] for counts in [2^b,
+  /// 2^(b+1)). Both empty: binomial.
+  std::vector<double> variance_factor, variance_factor_by_count;
+  std::int64_t leaked = 0;        ///< rays that met the back of a wall or were lost
+  double mean_chord_m = 0;        ///< area-weighted mean free length of a ray over all surfaces
+  double mean_chord_error_m = 0;  ///< its standard error (binomial sampling)
+  /// > 1: to respect the memory limit, a pair with h < unit hits was kept with probability h / unit, as
+  /// `unit` hits: unbiased, the same draw for both directions of a pair. 1: nothing was thinned.
+  std::int64_t thinning_unit = 1;
 };
 
 /// Exchange areas X_ij = A_i F_ij, m^2, with the variance of each.
@@ -31,7 +38,13 @@ struct ExchangeAreas {
   std::vector<double> value;     ///< [nnz] X_ij
   std::vector<double> variance;  ///< [nnz] of X_ij; empty when not estimated (correlation tables)
   std::vector<double> area_m2;   ///< [surfaces]; emissivity * area for total exchange areas
+  /// [surfaces] n_i / A_i, 1/m^2: what the two one-way estimates of a pair are weighted by when they are
+  /// merged. Empty: both have the same weight and the same error (symmetric estimates, correlation tables).
+  std::vector<double> rays_per_m2{};
 };
+
+/// Variance of counts.hits[k], of surface i, relative to binomial.
+double count_variance_factor(const HitCounts& counts, std::size_t i, std::int64_t k);
 
 /// What closing an estimate changed. Defects are relative to the row sum A_i.
 struct ClosureReport {
@@ -44,16 +57,32 @@ struct ClosureReport {
 
 enum class Closure { reciprocal, row_sum };
 
-/// X_ij = A_i hits_ij / launched_i with its binomial variance (Wilson-regularised, so that one hit does not
-/// claim certainty). One-way estimates: not symmetric, rows of surfaces without rays empty.
+/// X_ij = A_i hits_ij / launched_i with variance A_i^2 p (1 - p) / n times the count's factor, where p = (h +
+/// 1/2) / (n + 1) so that neither one hit nor n of n claim certainty. One-way estimates: not symmetric, rows
+/// of surfaces without rays empty.
 ExchangeAreas one_way_estimate(const HitCounts& counts);
 
 /// Closes rows.
-/// reciprocal: merges X_ij and X_ji by inverse variance, then scales x_i X_ij x_j (symmetric Sinkhorn,
-/// x_i <- x_i sqrt(A_i / r_i)) until every row sums to A_i within 1e-12. Result exactly symmetric.
-/// row_sum: the paper's Eq. (norm), row by row; closes, breaks reciprocity; kept for replication.
-/// Variances are propagated. Throws NumericalError when scaling cannot converge (a surface sees nothing).
+/// reciprocal: merges X_ij and X_ji by inverse variance (weights n_i / A_i: both counts see the same X), then
+/// scales x_i X_ij x_j (symmetric Sinkhorn, x_i <- x_i sqrt(A_i / r_i)) until every row sums to A_i within
+/// 1e-12. Result exactly symmetric. row_sum: the paper's Eq. (norm), row by row; closes, breaks reciprocity;
+/// kept for replication. The last surface, the surroundings, is a black surface of whatever area its row
+/// comes to: it is not scaled, and area_m2.back() of the result is that row sum. Surfaces of area 0 (dropped,
+/// or reflecting everything) stay empty. Variances follow the scaling; that closure itself takes error out of
+/// a row is left out, so they are upper estimates for pairs that dominate a row. Throws NumericalError when
+/// scaling cannot converge (a surface sees nothing, or only surfaces that cannot fill it).
 ExchangeAreas close(const ExchangeAreas& estimate, Closure closure, ClosureReport& report);
+
+/// The estimate without the surfaces marked in `dropped` (walls with role `excluded`): what they exchanged is
+/// lost from the rows of the others, and their area becomes 0. To be called before closure.
+ExchangeAreas drop_surfaces(const ExchangeAreas& estimate, const std::vector<char>& dropped);
+
+/// 99 % upper bound of F_ij for a pair that was never hit by n_i rays of i and n_j of j (rule of -ln 0.01):
+/// A_i F_ij <= 4.605 / (n_i / A_i + n_j / A_j).
+double zero_hit_bound_m2(const HitCounts& counts, std::size_t i, std::size_t j);
+
+/// Reduced chi^2 of X_ij - X_ji over the pairs both of whose ends sent rays; 0 when there are none.
+double reciprocity_chi2(const ExchangeAreas& one_way);
 
 /// The pattern with every (i, j) present together with (j, i).
 SparsePattern symmetrized(const SparsePattern& pattern);

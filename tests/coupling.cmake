@@ -1,1 +1,8 @@
 # tests of coupling: granrad_test(shelf/name libraries...)
+granrad_test(analytic/gas_lens granrad_coupling)
+granrad_test(analytic/conduction granrad_coupling)
+granrad_test(analytic/radiosity granrad_coupling Eigen3::Eigen)
+granrad_test(analytic/paths granrad_coupling)
+granrad_test(physics/paths granrad_raytrace)
+target_include_directories(test_analytic_paths PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+target_include_directories(test_physics_paths PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})

@@ -1,1 +1,5 @@
 # tests of feed: granrad_test(shelf/name libraries...)
+granrad_test(unit/packing granrad_dem)
+granrad_test(physics/hard_sphere_fluid granrad_dem)
+granrad_test(unit/plug_feed granrad_dem)
+granrad_test(unit/hopper_feed granrad_dem)

@@ -1,1 +1,2 @@
 # tests of raytrace: granrad_test(shelf/name libraries...)
+granrad_test(analytic/view_factors granrad_raytrace)

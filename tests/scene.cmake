@@ -1,1 +1,2 @@
 # tests of the scene vocabulary
+granrad_test(unit/toml_reader granrad_scene)

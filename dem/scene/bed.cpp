@@ -1,6 +1,7 @@
 #include "dem/scene/bed.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "dem/scene/constants.h"
 
@@ -46,6 +47,24 @@ void Bed::remove_unless(const std::vector<char>& keep) {
 std::int64_t Bed::index_of(std::int64_t particle_id) const {
   const auto at = std::lower_bound(id.begin(), id.end(), particle_id);
   return at != id.end() && *at == particle_id ? at - id.begin() : -1;
+}
+
+Vec3 wrapped_into_box(const Bed& bed, Vec3 p) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!bed.periodic[axis]) continue;
+    const double low = bed.box.min[axis], high = bed.box.max[axis], period = high - low;
+    p[axis] = std::clamp(p[axis] - period * std::floor((p[axis] - low) / period), low, high);
+  }
+  return p;
+}
+
+Vec3 nearest_image(const Bed& bed, Vec3 apart) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!bed.periodic[axis]) continue;
+    const double period = bed.box.max[axis] - bed.box.min[axis];
+    apart[axis] -= period * std::round(apart[axis] / period);
+  }
+  return apart;
 }
 
 double mass_kg(const Bed& bed, std::size_t i) {

@@ -50,6 +50,11 @@ struct Bed {
   std::int64_t index_of(std::int64_t id) const;
 };
 
+/// p moved by whole periods into the box along its periodic directions.
+Vec3 wrapped_into_box(const Bed& bed, Vec3 p);
+/// The shortest of the periodic images of a vector between two places.
+Vec3 nearest_image(const Bed& bed, Vec3 apart);
+
 /// Mass of particle i: 4/3 pi r^3 rho, kg.
 double mass_kg(const Bed& bed, std::size_t i);
 

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dem/scene/bed.h"
@@ -22,6 +23,7 @@ struct Snapshot {
   Bed bed;
   StateBlocks state;
   std::string origin;  ///< file it came from
+  bool has_temperature = true;  ///< false: the file had none, temperature_K is a placeholder of 300 K
 };
 
 /// Writes one frame: VTKHDF 1.0 UnstructuredGrid (points as vertices; PointData id, radius, temperature,
@@ -29,6 +31,11 @@ struct Snapshot {
 /// bit. Written to a temporary name, fsynced, renamed: a frame is whole or not there. Throws IoError.
 void write_frame(const std::filesystem::path& file, const Bed& bed, const StateBlocks& state,
                  const std::map<std::string, std::vector<double>>& extra = {});
+
+/// Writes `name.hdf.series`, by which ParaView shows frames at their times: (file, time in s), file names relative
+/// to the folder of `series_file`. Written whole or not at all. Throws IoError.
+void write_series(const std::filesystem::path& series_file,
+                  const std::vector<std::pair<std::filesystem::path, double>>& frames);
 
 /// Reads a frame written by write_frame, bit for bit. Throws IoError (cannot read) or InputError (not a frame).
 Snapshot read_frame(const std::filesystem::path& file);

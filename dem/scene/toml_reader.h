@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -53,6 +54,7 @@ class TomlDocument {
  private:
   friend class TomlTable;
   struct State;
+  TomlDocument();
   std::unique_ptr<State> state_;
 };
 
@@ -79,10 +81,16 @@ class TomlTable {
   Vec3 vec3(std::string_view key, const NumberRule& each, std::optional<Vec3> fallback = {});
   std::vector<Vec3> vec3_list(std::string_view key, const NumberRule& each, std::size_t min_count);
   std::vector<double> number_list(std::string_view key, const NumberRule& each, std::size_t min_count);
+  std::vector<std::string> string_list(std::string_view key, std::size_t min_count = 0);
+
+  /// When `key` names a TOML file, the keys of that file's root that this table lacks are added to it; they
+  /// keep their place in that file for messages.
+  void add_keys_from_file(std::string_view key);
 
   TomlTable table(std::string_view key);               ///< [key]; absent reads as empty
   std::vector<TomlTable> tables(std::string_view key);  ///< [[key]]
-  /// Records a problem at `key` of this table, or at the table when the key is absent.
+  /// Records a problem at `key` of this table, or at the table when the key is absent, as `path = value (message)`;
+  /// a message that starts with "= " shows the value itself.
   void problem(std::string_view key, std::string_view message);
 
  private:

@@ -23,9 +23,9 @@ const char* to_string(WallRole role);
 /// The right-hand normal of polygon and triangles points to the side where the particles are; that side
 /// radiates. Contact works from both sides.
 struct Wall {
-  std::string name;
-  std::vector<Vec3> vertices;
-  std::vector<std::array<std::int32_t, 3>> triangles;
+  std::string name{};
+  std::vector<Vec3> vertices{};
+  std::vector<std::array<std::int32_t, 3>> triangles{};
   WallRole role = WallRole::adiabatic;
   double temperature_K = 300;
   double emissivity = 1;

@@ -1,0 +1,44 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "raytrace/exchange.h"
+#include "raytrace/exchange_source.h"
+
+namespace granrad {
+
+/// Exchange source by view factors and one radiosity per surface: estimate -> close -> solve.
+/// Isothermal surfaces radiate with their emissivity, adiabatic walls with emissivity 0 and one radiosity per
+/// wall, open walls and the surroundings are black at their temperature, excluded walls are dropped before
+/// closure. While the enclosure does not change (a frozen bed) the exchange areas are estimated once.
+/// One radiosity per surface is biased in dense grey beds (+14 % wall heat at phi = 0.43, emissivity 0.4);
+/// PathSource is not.
+class RadiositySource : public ExchangeSource {
+ public:
+  /// Exchange areas of an enclosure, one-way or symmetric, before closure; `update` selects random numbers.
+  using Estimate = std::function<ExchangeAreas(const Enclosure&, std::uint64_t update)>;
+
+  RadiositySource(Estimate estimate, Closure closure) : estimate_(std::move(estimate)), closure_(closure) {}
+  RadiativeHeat net_heat(const Enclosure& enclosure, const RadiativeState& state,
+                         std::uint64_t update) override;
+
+  /// Of the areas in use.
+  const ClosureReport& closure_report() const { return report_; }
+  /// Of the last solve; 0 when every surface was black.
+  int iterations() const { return iterations_; }
+
+ private:
+  void prepare(const Enclosure& enclosure, const std::vector<WallRole>& role, std::uint64_t update);
+
+  Estimate estimate_;
+  Closure closure_;
+  ClosureReport report_;
+  int iterations_ = 0;
+  bool prepared_ = false;
+  Enclosure enclosure_;             ///< the one `areas_` belong to
+  std::vector<std::int32_t> kept_;  ///< surface number of each row of `areas_`
+  ExchangeAreas areas_;             ///< closed, without excluded walls
+};
+
+}  // namespace granrad

@@ -1,0 +1,40 @@
+#pragma once
+#include <cstdint>
+
+#include "coupling/heat_scene.h"
+#include "coupling/step_limits.h"
+#include "dem/scene/snapshot.h"
+
+namespace granrad {
+
+/// Whole-number bookkeeping of a run: everything happens on ticks. One tick is one heat step:
+/// `steps_per_tick` DEM steps in a moving bed, one in a frozen bed. Times are tick * tick_s, so that no
+/// rounding adds up.
+struct TimePlan {
+  double step_s = 0;  ///< DEM step, or the heat step of a frozen bed
+  std::int64_t steps_per_tick = 1;
+  double tick_s = 0;
+  std::int64_t ticks_per_radiation = 0;  ///< 0: no radiation
+  std::int64_t ticks_per_row = 0, ticks_per_frame = 0;
+  std::int64_t end_tick = 0;
+
+  double time_s(std::int64_t tick) const { return static_cast<double>(tick * steps_per_tick) * step_s; }
+  /// Radiation is renewed at the begin of an interval, rows and frames come at the end of theirs.
+  bool radiation_at(std::int64_t tick) const {
+    return ticks_per_radiation > 0 && (tick - 1) % ticks_per_radiation == 0;
+  }
+  bool row_at(std::int64_t tick) const { return tick % ticks_per_row == 0 || tick == end_tick; }
+  bool frame_at(std::int64_t tick) const { return tick % ticks_per_frame == 0 || tick == end_tick; }
+
+  /// A case goes on with the plan it was started with; only its end may move.
+  StateBlock save() const;
+  static TimePlan restored(const StateBlock& block, double end_time_s);
+};
+
+/// Chooses steps within the limits so that radiation updates, rows and frames fall on ticks.
+/// conduction_limit_s: largest stable heat step (infinite without conduction).
+/// Throws InputError, every problem at once, each with the largest allowed value or the nearest ones that
+/// fit.
+TimePlan make_time_plan(const Case& c, const StepLimits& limits, double conduction_limit_s);
+
+}  // namespace granrad

@@ -1,0 +1,34 @@
+#pragma once
+#include "dem/feed.h"
+
+namespace granrad {
+
+/// Moving bed: `particle_count` spheres poured into `fill_region`, leaving below `remove_below_m`.
+///
+/// Start: a random packing from the bottom of the region up (solid fraction `solid_fraction`, default 0.5),
+/// moving down with `velocity_m_s`, to be settled by the engine; what the region cannot hold is dropped
+/// later. Refill: the bed is kept at `particle_count`. Each missing sphere is set down cold at a random place
+/// of the region, just above the highest sphere there (heap or falling spheres), so it never overlaps; when
+/// the region is full there, it waits. `mass_flow_kg_s` > 0 caps the rate.
+class HopperFeed {
+ public:
+  explicit HopperFeed(const Scene& scene);
+  void start(Bed& bed);
+  double leaves_below_m() const { return settings_.remove_below_m; }
+  void insert_due(Bed& bed, FeedTotals& totals);
+  void save(StateBlock& state) const;
+  void load(const StateBlock& state);
+
+ private:
+  std::int64_t due(const Bed& bed, const FeedTotals& totals) const;
+  bool drop_one(Bed& bed, std::vector<std::size_t>& in_region);
+  double floor_at(const Bed& bed, const std::vector<std::size_t>& in_region, double x, double y) const;
+  void add(Bed& bed, const Vec3& position) const;
+
+  FeedSettings settings_;
+  double radius_, temperature_, density_;
+  double start_s_ = 0;
+  std::int64_t placed_ = 0, tries_ = 0;
+};
+
+}  // namespace granrad

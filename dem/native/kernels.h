@@ -1,0 +1,87 @@
+#pragma once
+#include <cstdint>
+
+#include "dem/hertz_mindlin.h"
+
+namespace granrad::native {
+
+/// Rows of all particles, in the engine's own order. 64-byte aligned.
+struct RowView {
+  double* position;     ///< [4] x, y, z at the middle of the step, reach (radius + what it may move until the next refresh)
+  double* velocity;     ///< [8] v, speed limit, omega, 0
+  std::int64_t* force;  ///< [8] F, 0, torque, 0, in fixed point; zero between steps
+};
+
+/// Contacts between two rows, or a row and a plane. `count` is a multiple of 8; entries up to 64 beyond it
+/// are valid rows (prefetching looks there).
+struct ContactView {
+  const std::int32_t* first;
+  const std::int32_t* second;
+  std::int64_t count;
+  double* displacement[3];
+  const double* varied;  ///< nullptr: `StepConstants::pair`; else columns of `stride` doubles, see VariedColumn
+  std::int64_t stride;
+};
+
+/// Columns of coefficients of contacts that are not all alike.
+enum VariedColumn {
+  effective_radius, normal, tangential, normal_damping, tangential_damping, friction, rolling,
+  radius_first, radius_second, varied_columns
+};
+
+/// Walls that act as planes: rows {point, 0, unit normal, 0} of eight and velocity rows {v, 0} of four doubles.
+struct PlaneView {
+  const double* geometry;
+  const double* velocity;
+};
+
+/// What every contact of a step needs.
+struct StepConstants {
+  HertzMindlin<double> pair, wall;  ///< when all particles are alike
+  double radius;
+  double step_s;
+  bool periodic;
+  double period[3], inverse_period[3];  ///< zero where not periodic
+  double force_scale, torque_scale;     ///< fixed-point units per N and per N m (powers of two)
+};
+
+/// What moving the particles needs. kick rows {dt/m x3, 0, dt/I x3, 0} divided by the fixed-point scales.
+struct MoveConstants {
+  const double* kick;
+  std::int64_t kick_stride;   ///< 0: one row for all, 8: one each
+  double gravity_kick[8];     ///< {g dt, 0 ...}
+  double mean_velocity[4];    ///< speed limits are relative to it
+  double half_step_s;
+};
+
+/// An overlap deeper than this fraction of the (smaller) radius is beyond the model.
+inline constexpr double deepest_overlap = 0.5;
+
+/// The inner loops, compiled once for each instruction set from kernel_bodies.h.
+/// Contact functions return the largest `overlap - deepest_overlap x radius` met, m.
+struct Kernels {
+  const char* name;
+  /// Adds forces to both rows; `pair_contacts_first` to the first row only (the second has another owner).
+  double (*pair_contacts)(const RowView&, const ContactView&, const StepConstants&);
+  double (*pair_contacts_first)(const RowView&, const ContactView&, const StepConstants&);
+  /// `second` numbers planes.
+  double (*plane_contacts)(const RowView&, const ContactView&, const PlaneView&, const StepConstants&);
+  /// v += F dt/m + g dt, omega likewise, x += v dt/2, forces cleared, rows [begin, end). Unless `last`, x moves
+  /// another half step, to the middle of the next one. True if a speed limit is broken (or not a number).
+  bool (*move)(const RowView&, std::int64_t begin, std::int64_t end, const MoveConstants&, bool last);
+  /// Keeps the pairs closer than the sum of their reaches: rows into `first`, `second`, their numbers into
+  /// `source`. `count` is padded to a multiple of 8. Returns how many; writes up to 8 entries beyond.
+  std::int64_t (*select_close)(const RowView&, const StepConstants&, const std::int32_t* i, const std::int32_t* j,
+                               std::int64_t count, std::int32_t* first, std::int32_t* second, std::int32_t* source);
+  decltype(&ScalarPack::find_close) find_close;
+};
+
+const Kernels& avx512_kernels();
+const Kernels& avx2_kernels();
+const Kernels& baseline_kernels();
+
+/// The best this machine runs, or what the environment variable GRANRAD_SIMD (avx512 | avx2 | baseline) asks
+/// for. Throws InputError for another value or an instruction set the machine lacks.
+const Kernels& select_kernels();
+
+}  // namespace granrad::native

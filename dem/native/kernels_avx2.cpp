@@ -1,0 +1,9 @@
+#include "dem/native/kernel_bodies.h"
+#include "dem/native/simd_avx2.h"
+
+namespace granrad::native {
+const Kernels& avx2_kernels() {
+  static constexpr Kernels kernels = KernelBodies<Avx2Pack>::table("avx2");
+  return kernels;
+}
+}  // namespace granrad::native

@@ -1,0 +1,69 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "dem/native/aligned.h"
+#include "dem/native/grid.h"
+#include "dem/native/kernels.h"
+#include "dem/native/rows.h"
+
+namespace granrad::native {
+
+/// Memories by row, for the first refresh after the rows were renumbered: each spring under both partners.
+class MemoryTable {
+ public:
+  void build(const std::vector<Memory>& memories, const Rows& rows);
+  /// Spring between rows i and j as i sees it, or zero.
+  Vec3 find(std::int32_t i, std::int32_t j) const;
+
+ private:
+  struct Entry {
+    std::int32_t other;
+    Vec3 displacement;
+  };
+  std::vector<std::int64_t> begin_;
+  std::vector<Entry> entries_;
+};
+
+/// The pairs one thread works on, in two lists. Near: gap below a skin, found with the grid, kept while nobody
+/// has moved through the skin. Tight: those of the near list that can touch before the next refresh; only
+/// these are visited each step, and they carry the springs.
+class PairList {
+ public:
+  void clear_near() { near_i_.clear(), near_j_.clear(), fresh_ = true; }
+  void add_near(std::int32_t i, std::int32_t j) { near_i_.push_back(i), near_j_.push_back(j); }
+  /// Appends the partners found[0, count) of row i; returns where to write the next ones.
+  void add_near(std::int32_t i, const std::int32_t* found, std::int64_t count);
+  /// Pads with the idle rows; call when all near pairs are in.
+  void finish_near(std::int32_t idle_row);
+
+  /// Chooses the tight pairs by the reaches in the rows and carries the springs over, from the list before
+  /// or, after finish_near, from `memories`.
+  void refresh(const Kernels& kernels, const RowView& rows, const StepConstants& constants, const MemoryTable& memories);
+  /// Fills the coefficient columns of contacts that are not all alike.
+  void fill_coefficients(const Rows& rows, const std::vector<Material>& materials);
+  ContactView view();
+
+  /// Appends every spring that is not zero; pairs with first row > second row (another thread's twin) are left out.
+  void collect(const Rows& rows, std::vector<Memory>& memories) const;
+
+  std::int64_t near_count() const { return near_count_; }
+  std::int64_t tight_count() const { return tight_count_; }
+  /// Contacts that touch now: tight pairs with a spring.
+  std::int64_t touching_count() const;
+  std::int32_t near_first(std::int64_t k) const { return near_i_[k]; }
+  std::int32_t near_second(std::int64_t k) const { return near_j_[k]; }
+  std::size_t bytes() const;
+
+ private:
+  AlignedVector<std::int32_t> near_i_, near_j_;
+  AlignedVector<std::int32_t> first_, second_, source_, next_first_, next_second_, next_source_;
+  AlignedVector<double> displacement_[3], next_displacement_[3];
+  AlignedVector<double> varied_;
+  std::int64_t near_count_ = 0, tight_count_ = 0, padded_ = 0;
+  std::int32_t idle_row_ = 0;
+  bool fresh_ = true;  ///< near numbers have changed: springs come from the memories
+  bool varied_used_ = false;
+};
+
+}  // namespace granrad::native

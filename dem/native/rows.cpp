@@ -1,0 +1,19 @@
+#include "dem/native/rows.h"
+
+namespace granrad::native {
+
+Periods::Periods(const Bed& bed) {
+  for (int a = 0; a < 3; ++a) {
+    if (!bed.periodic[a]) continue;
+    length[a] = bed.box.size()[a];
+    inverse[a] = 1 / length[a];
+    any = true;
+  }
+}
+
+Vec3 Periods::nearest(Vec3 d) const {
+  for (int a = 0; a < 3; ++a) d[a] -= length[a] * ScalarPack::round(d[a] * inverse[a]);
+  return d;
+}
+
+}  // namespace granrad::native

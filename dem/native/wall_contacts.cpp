@@ -1,0 +1,237 @@
+#include "dem/native/wall_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dem/native/materials.h"
+
+namespace granrad::native {
+namespace {
+
+using Touch = WallSurface::Touch;
+
+/// Contact points closer than this fraction of the radius are one.
+constexpr double same_point = 1e-4;
+/// Adjacent faces bent by less than one degree are one smooth wall.
+constexpr double smooth_bend = 0.99985;
+
+/// Of two touches that report the same wall, the one of lower rank (face, edge, vertex), then the deeper, stays.
+bool repeats(const WallSurface& surface, const Touch& t, const Touch& kept, double tolerance) {
+  if (t.feature == kept.feature || norm(t.point - kept.point) < tolerance) return true;
+  if (kept.rank == 0 && t.rank > 0) return std::abs(dot(t.point - kept.point, kept.normal)) < tolerance;
+  return kept.rank == 0 && t.rank == 0 && dot(t.normal, kept.normal) > smooth_bend &&
+         surface.adjacent(t.feature, kept.feature);
+}
+
+std::vector<Touch> distinct_touches(const WallSurface& surface, const std::int32_t* begin, const std::int32_t* end,
+                                    const Vec3& p, double radius) {
+  std::vector<Touch> all, kept;
+  for (auto f = begin; f != end; ++f) surface.touches(*f, p, radius, all);
+  if (all.empty()) {  // rounding may leave a crack between features: the nearest side closes it
+    for (auto f = begin; f != end; ++f)
+      if (surface.stands(*f) && surface.distance(*f, p) < radius) all.push_back(surface.nearest(*f, p));
+  }
+  std::sort(all.begin(), all.end(), [](const Touch& a, const Touch& b) {
+    if (a.rank != b.rank) return a.rank < b.rank;
+    return a.distance_m != b.distance_m ? a.distance_m < b.distance_m : a.feature < b.feature;
+  });
+  for (const auto& t : all) {
+    const auto same = [&](const Touch& k) { return repeats(surface, t, k, same_point * radius); };
+    if (std::none_of(kept.begin(), kept.end(), same)) kept.push_back(t);
+  }
+  return kept;
+}
+
+}  // namespace
+
+void WallContacts::find_near(const WallSurface& surface, const Grid& grid, const Rows& rows, Range range,
+                             double skin_m, const Vec3& drift, double slack_m) {
+  near_.clear();
+  double largest = 0;
+  for (auto i = range.begin; i < range.end; ++i) largest = std::max(largest, rows.radius[i]);
+  const double margin = largest + skin_m + slack_m;
+  const Vec3 grow{margin, margin, margin};
+  for (std::int32_t f = 0; f < surface.facet_count(); ++f) {
+    if (!surface.stands(f)) continue;
+    const Box box{surface.bounds(f).min - grow - drift, surface.bounds(f).max + grow - drift};
+    grid.ranges_in(box, [&](std::int64_t begin, std::int64_t end) {
+      for (auto i = std::max(begin, range.begin); i < std::min(end, range.end); ++i) {
+        const Vec3 p = rows.position_of(i);
+        const double reach = rows.radius[i] + skin_m;
+        if (std::abs(surface.height(f, p)) < reach && surface.distance(f, p) < reach)
+          near_.push_back({static_cast<std::int32_t>(i), f});
+      }
+    });
+  }
+  std::sort(near_.begin(), near_.end(),
+            [](const Near& a, const Near& b) { return a.row != b.row ? a.row < b.row : a.facet < b.facet; });
+}
+
+bool WallContacts::acts_as_planes(const WallSurface& surface, const Vec3& p, double margin_m,
+                                  const std::vector<std::int32_t>& facets) const {
+  for (const auto f : facets) {
+    if (!surface.clear_of_sides(f, p, margin_m)) return false;
+    const bool inside = std::any_of(facets.begin(), facets.end(), [&](auto g) {
+      return surface.group(g) == surface.group(f) && surface.foot_inside(g, p);
+    });
+    if (!inside) return false;
+  }
+  return true;
+}
+
+void WallContacts::add_plane(std::int32_t row, std::int32_t facet, std::int64_t feature,
+                             std::vector<WallMemory>& kept) {
+  rows_.push_back(row), facets_.push_back(facet), features_.push_back(feature);
+  Vec3 s;
+  const auto at = std::lower_bound(kept.begin(), kept.end(), row, [](const WallMemory& m, auto r) { return m.row < r; });
+  for (auto m = at; m != kept.end() && m->row == row; ++m)
+    if (m->feature == feature) s = m->displacement;
+  for (int a = 0; a < 3; ++a) displacement_[a].push_back(s[a]);
+}
+
+void WallContacts::finish_planes(const Rows& rows, const std::vector<Material>& materials, std::int32_t idle_row) {
+  plane_count_ = static_cast<std::int64_t>(rows_.size());
+  while (rows_.size() % 8) {
+    rows_.push_back(idle_row), facets_.push_back(facets_[0]), features_.push_back(-1);
+    for (auto& column : displacement_) column.push_back(0);
+  }
+  const auto padded = rows_.size();
+  varied_.clear();
+  if (rows.uniform) return;
+  varied_.assign(varied_columns * padded, 0);
+  for (std::int64_t k = 0; k < plane_count_; ++k) {
+    const auto i = rows_[k];
+    const auto c = wall_coefficients({&materials[rows.material[i]], rows.radius[i], rows.mass[i]});
+    const double columns[varied_columns] = {c.effective_radius, c.normal, c.tangential, c.normal_damping,
+                                            c.tangential_damping, c.friction, c.rolling, rows.radius[i], rows.radius[i]};
+    for (int n = 0; n < varied_columns; ++n) varied_[n * padded + k] = columns[n];
+  }
+}
+
+void WallContacts::refresh(const WallSurface& surface, const Rows& rows, const std::vector<Material>& materials,
+                           double extra_m, std::int32_t idle_row) {
+  std::vector<WallMemory> kept = restored_ ? std::move(memories_) : collect();
+  restored_ = false;
+  memories_.clear(), borders_.clear(), border_facets_.clear();
+  rows_.clear(), facets_.clear(), features_.clear();
+  for (auto& column : displacement_) column.clear();
+  std::vector<std::int32_t> close;
+  for (std::size_t k = 0; k < near_.size();) {
+    const auto row = near_[k].row;
+    const Vec3 p = rows.position_of(row);
+    const double reach = rows.position[4 * row + 3] + extra_m, margin = reach - rows.radius[row];
+    close.clear();
+    for (; k < near_.size() && near_[k].row == row; ++k)
+      if (surface.stands(near_[k].facet) && std::abs(surface.height(near_[k].facet, p)) < reach &&
+          surface.distance(near_[k].facet, p) < reach)
+        close.push_back(near_[k].facet);
+    if (close.empty()) continue;
+    if (acts_as_planes(surface, p, margin, close)) {
+      for (const auto f : close)
+        if (surface.foot_inside(f, p)) add_plane(row, f, surface.group(f), kept);
+      continue;
+    }
+    Border border{row, border_facets_.size(), border_facets_.size() + close.size(), {}};
+    border_facets_.insert(border_facets_.end(), close.begin(), close.end());
+    for (const auto& m : kept)
+      if (m.row == row) border.springs.push_back({m.feature, m.displacement});
+    borders_.push_back(std::move(border));
+  }
+  finish_planes(rows, materials, idle_row);
+}
+
+double WallContacts::add_forces(const Kernels& kernels, const WallSurface& surface, Rows& rows,
+                                const StepConstants& constants, const std::vector<Material>& materials) {
+  double deepest = -1;
+  if (plane_count_ > 0) {
+    const auto padded = static_cast<std::int64_t>(rows_.size());
+    const ContactView view{rows_.data(), facets_.data(), padded,
+                           {displacement_[0].data(), displacement_[1].data(), displacement_[2].data()},
+                           rows.uniform ? nullptr : varied_.data(), padded};
+    deepest = kernels.plane_contacts(rows.view(), view, {surface.plane_rows(), surface.velocity_rows()}, constants);
+  }
+  for (auto& border : borders_) deepest = std::max(deepest, border_forces(surface, rows, constants, materials, border));
+  return deepest;
+}
+
+double WallContacts::border_forces(const WallSurface& surface, Rows& rows, const StepConstants& constants,
+                                   const std::vector<Material>& materials, Border& border) {
+  const auto i = border.row;
+  const Vec3 p = rows.position_of(i), v = rows.velocity_of(i), w = rows.spin_of(i);
+  const double radius = rows.radius[i];
+  const auto touches = distinct_touches(surface, border_facets_.data() + border.facets_begin,
+                                        border_facets_.data() + border.facets_end, p, radius);
+  if (touches.empty()) {
+    border.springs.clear();
+    return -1;
+  }
+  const auto law = rows.uniform ? constants.wall
+                                : wall_coefficients({&materials[rows.material[i]], radius, rows.mass[i]});
+  std::vector<Spring> old = std::move(border.springs);
+  border.springs.clear();
+  // A spring stays with its feature; what rolled from one feature to the next takes its spring along.
+  const auto take = [&](auto matches) {
+    Vec3 s;
+    const auto at = std::find_if(old.begin(), old.end(), matches);
+    if (at != old.end()) s = at->displacement, old.erase(at);
+    return s;
+  };
+  const auto known = [&](std::int64_t feature) {
+    return std::any_of(old.begin(), old.end(), [&](const Spring& s) { return s.feature == feature; });
+  };
+  std::vector<Spring> next;
+  std::vector<bool> is_new;
+  for (const auto& t : touches) {
+    is_new.push_back(!known(t.feature));
+    next.push_back({t.feature, take([&](const Spring& s) { return s.feature == t.feature; })});
+  }
+  for (std::size_t k = 0; k < touches.size(); ++k)
+    if (is_new[k])
+      next[k].displacement = take([&](const Spring& s) { return surface.adjacent(s.feature, touches[k].feature); });
+
+  double deepest = -1;
+  for (std::size_t k = 0; k < touches.size(); ++k) {
+    const Touch& t = touches[k];
+    ContactState<ScalarPack> c;
+    c.overlap = radius - t.distance_m;
+    const double arm = radius - 0.5 * c.overlap;
+    const Vec3 u = v - surface.velocity(t.facet);
+    for (int a = 0; a < 3; ++a) {
+      c.normal[a] = t.normal[a], c.velocity[a] = u[a], c.arm_spin[a] = arm * w[a];
+      c.displacement[a] = next[k].displacement[a];
+    }
+    const auto result = contact_force<ScalarPack>(law, constants.step_s, c);
+    deepest = std::max(deepest, c.overlap - deepest_overlap * radius);
+    double torque[3], roll[3];
+    for (int a = 0; a < 3; ++a) torque[a] = -arm * result.moment[a];
+    if (!rows.uniform) {
+      const double spin[3] = {w.x, w.y, w.z};
+      rolling_torque<ScalarPack>(law, result.elastic, c.normal, spin, roll);
+      for (int a = 0; a < 3; ++a) torque[a] += roll[a];
+    }
+    for (int a = 0; a < 3; ++a) {
+      rows.force[8 * i + a] += ScalarPack::to_fixed(result.force[a] * constants.force_scale);
+      rows.force[8 * i + 4 + a] += ScalarPack::to_fixed(torque[a] * constants.torque_scale);
+      next[k].displacement[a] = c.displacement[a];
+    }
+    if (!(next[k].displacement == Vec3{})) border.springs.push_back(next[k]);
+  }
+  return deepest;
+}
+
+std::vector<WallMemory> WallContacts::collect() const {
+  if (restored_) return memories_;
+  std::vector<WallMemory> all;
+  for (std::int64_t k = 0; k < plane_count_; ++k) {
+    const Vec3 s{displacement_[0][k], displacement_[1][k], displacement_[2][k]};
+    if (!(s == Vec3{})) all.push_back({rows_[k], features_[k], s});
+  }
+  for (const auto& b : borders_)
+    for (const auto& s : b.springs) all.push_back({b.row, s.feature, s.displacement});
+  std::sort(all.begin(), all.end(), [](const WallMemory& a, const WallMemory& b) {
+    return a.row != b.row ? a.row < b.row : a.feature < b.feature;
+  });
+  return all;
+}
+
+}  // namespace granrad::native

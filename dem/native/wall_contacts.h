@@ -1,0 +1,75 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "dem/native/grid.h"
+#include "dem/native/kernels.h"
+#include "dem/native/rows.h"
+#include "dem/native/wall_surface.h"
+
+namespace granrad::native {
+
+/// The spring of a row at a wall feature.
+struct WallMemory {
+  std::int32_t row;
+  std::int64_t feature;
+  Vec3 displacement;
+};
+
+/// The wall contacts of one thread's rows. Most particles meet walls far from edges: there the walls are
+/// planes, worked on in packs. Near edges and corners ("border rows") each step asks the surface for the
+/// local minima of the distance.
+class WallContacts {
+ public:
+  struct Range {
+    std::int64_t begin, end;
+  };
+  /// Facets within `skin_m` of the rows' surfaces. `drift` is how far the rows' mean moved since the grid was
+  /// sorted, `slack_m` how far a row may have moved beside it.
+  void find_near(const WallSurface& surface, const Grid& grid, const Rows& rows, Range range, double skin_m,
+                 const Vec3& drift, double slack_m);
+  /// Chooses those that can touch before the next refresh; `extra_m` is what the mean flow adds to the reach.
+  void refresh(const WallSurface& surface, const Rows& rows, const std::vector<Material>& materials, double extra_m,
+               std::int32_t idle_row);
+  /// Adds the forces; returns the largest `overlap - deepest_overlap x radius`.
+  double add_forces(const Kernels& kernels, const WallSurface& surface, Rows& rows, const StepConstants& constants,
+                    const std::vector<Material>& materials);
+
+  /// Springs that are not zero, in ascending rows.
+  std::vector<WallMemory> collect() const;
+  /// Replaces what the next refresh carries over.
+  void restore(std::vector<WallMemory> memories) { memories_ = std::move(memories), restored_ = true; }
+  std::int64_t contact_count() const { return plane_count_ + static_cast<std::int64_t>(borders_.size()); }
+
+ private:
+  struct Near {
+    std::int32_t row, facet;
+  };
+  struct Spring {
+    std::int64_t feature;
+    Vec3 displacement;
+  };
+  struct Border {
+    std::int32_t row;
+    std::size_t facets_begin, facets_end;
+    std::vector<Spring> springs;
+  };
+  bool acts_as_planes(const WallSurface& surface, const Vec3& p, double margin_m,
+                      const std::vector<std::int32_t>& facets) const;
+  void add_plane(std::int32_t row, std::int32_t facet, std::int64_t feature, std::vector<WallMemory>& kept);
+  void finish_planes(const Rows& rows, const std::vector<Material>& materials, std::int32_t idle_row);
+  double border_forces(const WallSurface& surface, Rows& rows, const StepConstants& constants,
+                       const std::vector<Material>& materials, Border& border);
+
+  std::vector<Near> near_;
+  std::vector<Border> borders_;
+  std::vector<std::int32_t> border_facets_;
+  std::vector<std::int32_t> rows_, facets_;  ///< plane contacts
+  std::vector<std::int64_t> features_;
+  AlignedVector<double> displacement_[3], varied_;
+  std::int64_t plane_count_ = 0;
+  std::vector<WallMemory> memories_;
+  bool restored_ = false;
+};
+
+}  // namespace granrad::native

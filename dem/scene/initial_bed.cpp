@@ -1,0 +1,114 @@
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "dem/scene/cell_grid.h"
+#include "dem/scene/error.h"
+#include "dem/scene/scene.h"
+#include "dem/scene/snapshot.h"
+
+namespace granrad {
+
+namespace {
+
+constexpr std::size_t examples_shown = 10;
+/// Larger overlaps would explode; resting beds have 1e-3 of the radius and less, softened ones up to a few 1e-2.
+constexpr double largest_overlap = 0.1;
+
+bool same_geometry(const std::vector<Wall>& a, const std::vector<Wall>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Wall& x, const Wall& y) {
+    return x.vertices == y.vertices && x.triangles == y.triangles;
+  });
+}
+
+/// Material numbers of the file become those of the scene, by name.
+void translate_materials(Bed& particles, const std::vector<Material>& scene_materials, const std::string& file) {
+  std::vector<std::int32_t> number(particles.materials.size());
+  for (std::size_t m = 0; m < number.size(); ++m) {
+    const auto same = [&](const Material& s) { return s.name == particles.materials[m].name; };
+    const auto at = std::find_if(scene_materials.begin(), scene_materials.end(), same);
+    if (at == scene_materials.end() && scene_materials.size() > 1)
+      throw InputError(fmt::format("{}: material \"{}\" (not in the scene) add [[materials]] with this name", file,
+                                   particles.materials[m].name));
+    number[m] = at == scene_materials.end() ? 0 : static_cast<std::int32_t>(at - scene_materials.begin());
+  }
+  for (auto& material : particles.material) {
+    if (!number.empty()) material = number.at(material);
+    if (material < 0 || material >= static_cast<std::int32_t>(scene_materials.size()))
+      throw InputError(fmt::format("{}: a particle is of material number {} (the scene has {}) add [[materials]]", file,
+                                   material, scene_materials.size()));
+  }
+}
+
+void refuse_particles_behind_walls(const Scene& scene, const Bed& bed) {
+  std::vector<std::int64_t> outside;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < bed.size(); ++i) {
+    const Vec3 p = wrapped_into_box(bed, bed.position_m[i]);
+    const auto behind = [&](const Wall& wall) {
+      return wall.contact && dot(polygon_normal(wall), p - wall.vertices[0]) < 0;
+    };
+    if (std::none_of(scene.walls.begin(), scene.walls.begin() + scene.box_wall_count, behind)) continue;
+    if (count++ < examples_shown) outside.push_back(bed.id[i]);
+  }
+  if (count > 0)
+    throw InputError(fmt::format("{}: {} particles lie outside the walls of the box, ids {}{} (their centres are behind "
+                                 "a wall) enlarge [box], or remove them from the file",
+                                 scene.particle_file.string(), count, fmt::join(outside, ", "),
+                                 count > examples_shown ? ", ..." : ""));
+}
+
+void refuse_deep_overlaps(const Scene& scene, const Bed& bed) {
+  if (bed.size() == 0) return;
+  std::vector<Vec3> points;
+  std::vector<std::int32_t> all;
+  for (std::size_t i = 0; i < bed.size(); ++i) {
+    points.push_back(wrapped_into_box(bed, bed.position_m[i]));
+    all.push_back(static_cast<std::int32_t>(i));
+  }
+  const double largest = *std::max_element(bed.radius_m.begin(), bed.radius_m.end());
+  const CellGrid grid(points, all, 2 * largest, bed.box, bed.periodic);
+  std::vector<std::string> pairs;
+  std::size_t count = 0;
+  for (const auto i : all)
+    grid.visit_around(points[i], [&](std::int32_t j, const Vec3& at) {
+      const double ri = bed.radius_m[i], rj = bed.radius_m[j];
+      if (j <= i || norm(nearest_image(bed, at - points[i])) >= ri + rj - largest_overlap * std::min(ri, rj)) return;
+      if (count++ < examples_shown) pairs.push_back(fmt::format("{}-{}", bed.id[i], bed.id[j]));
+    });
+  if (count > 0)
+    throw InputError(fmt::format("{}: {} pairs overlap by more than a tenth of a radius, ids {}{} (the contact law "
+                                 "would throw them apart) check the radius and the unit of length",
+                                 scene.particle_file.string(), count, fmt::join(pairs, ", "),
+                                 count > examples_shown ? ", ..." : ""));
+}
+
+void take_particles(const Scene& scene, Bed& bed) {
+  Snapshot snapshot = read_snapshot(scene.particle_file, 0.5 * scene.particle_diameter_m);
+  Bed& from = snapshot.bed;
+  translate_materials(from, scene.materials, scene.particle_file.string());
+  if (!same_geometry(from.walls, scene.walls))
+    std::erase_if(from.contacts, [](const ContactMemory& c) { return c.second < 0; });
+  if (!snapshot.has_temperature)
+    std::fill(from.temperature_K.begin(), from.temperature_K.end(), scene.particle_temperature_K);
+  bed = std::move(from);
+  bed.time_s = 0;
+  bed.step = 0;
+}
+
+}  // namespace
+
+Bed initial_bed(const Scene& scene) {
+  Bed bed;
+  if (!scene.particle_file.empty()) take_particles(scene, bed);
+  bed.materials = scene.materials;
+  bed.walls = scene.walls;
+  bed.periodic = scene.periodic;
+  bed.box = scene.box;
+  refuse_particles_behind_walls(scene, bed);
+  refuse_deep_overlaps(scene, bed);
+  return bed;
+}
+
+}  // namespace granrad

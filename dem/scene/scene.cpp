@@ -1,0 +1,111 @@
+#include "dem/scene/scene.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "dem/scene/error.h"
+#include "dem/scene/scene_parts.h"
+#include "dem/scene/snapshot.h"
+
+namespace granrad {
+
+namespace {
+
+Material read_material(TomlTable table, const std::string& default_name) {
+  const auto positive = [](const char* unit) { return NumberRule{.unit = unit, .min = 0, .min_exclusive = true}; };
+  const NumberRule fraction{.min = 0, .max = 1, .min_exclusive = true};
+  table.add_keys_from_file("file");
+  Material m;
+  m.name = table.string("name", default_name);
+  m.density_kg_m3 = table.number("density_kg_m3", positive("kg/m3"));
+  m.specific_heat_J_kgK = table.number("specific_heat_J_kgK", positive("J/(kg K)"));
+  m.conductivity_W_mK = table.number("conductivity_W_mK", positive("W/(m K)"));
+  m.youngs_modulus_Pa = table.number("youngs_modulus_Pa", positive("Pa"));
+  m.real_youngs_modulus_Pa = table.number("real_youngs_modulus_Pa", positive("Pa"), m.youngs_modulus_Pa);
+  m.poisson_ratio = table.number(
+      "poisson_ratio", {.min = 0, .max = 0.5, .max_exclusive = true, .why = "0.5 is incompressible"});
+  NumberRule restitution = fraction;
+  restitution.why = "part of the normal speed kept in a collision";
+  m.restitution = table.number("restitution", restitution);
+  m.friction = table.number("friction", {.min = 0});
+  m.rolling_friction = table.number("rolling_friction", {.min = 0}, 0.0);
+  NumberRule emissivity = fraction;
+  emissivity.why = "grey diffuse surface";
+  m.emissivity = table.number("emissivity", emissivity, 1.0);
+  return m;
+}
+
+std::vector<Material> read_materials(TomlTable root) {
+  std::vector<Material> materials{read_material(root.table("material"), "material")};
+  for (auto& table : root.tables("materials")) {
+    materials.push_back(read_material(table, fmt::format("material {}", materials.size() + 1)));
+    const auto same = [&](const Material& m) { return m.name == materials.back().name; };
+    if (std::count_if(materials.begin(), materials.end(), same) > 1)
+      table.problem("name", "another material has this name; names must differ");
+  }
+  return materials;
+}
+
+/// The mean diameter of a particle file; 0 with a problem recorded when it cannot be read.
+double mean_diameter_m(TomlTable& particles, const std::filesystem::path& file) {
+  try {
+    const Bed bed = read_snapshot(file).bed;
+    double sum = 0;
+    for (const double r : bed.radius_m) sum += 2 * r;
+    return bed.size() > 0 ? sum / static_cast<double>(bed.size()) : 0;
+  } catch (const Error& error) {
+    particles.problem("file", error.what());
+    return 0;
+  }
+}
+
+void read_particles(TomlTable table, Scene& scene) {
+  const NumberRule diameter{.unit = "m", .min = 0, .min_exclusive = true};
+  const NumberRule temperature{.unit = "K", .min = 0, .min_exclusive = true};
+  scene.particle_file = table.file("file", false);
+  scene.particle_temperature_K = table.number("temperature_K", temperature, 300);
+  const bool from_feed = scene.feed.kind != FeedSettings::Kind::none;
+  if (scene.particle_file.empty())
+    scene.particle_diameter_m = table.number("diameter_m", diameter);
+  else if (const auto given = table.optional_number("diameter_m", diameter))
+    scene.particle_diameter_m = *given;
+  else
+    scene.particle_diameter_m = mean_diameter_m(table, scene.particle_file);
+  if (scene.particle_file.empty() && !from_feed && !table.has("file"))
+    table.problem("", "there are no particles: give [particles] file or a [feed]");
+}
+
+void read_dem(TomlTable table, Scene& scene) {
+  const std::string engine = table.choice("engine", {"native", "liggghts", "none"}, "native");
+  if (engine == "liggghts") table.problem("engine", "is not built into this program; use \"native\"");
+  scene.engine = engine == "none" ? EngineKind::none : EngineKind::native;
+  scene.step_s = table.number("step_s", {.unit = "s", .min = 0, .min_exclusive = true}, 0.0);
+}
+
+bool radiation_is_on(TomlTable root) {
+  TomlTable radiation = root.table("radiation");
+  return radiation.present() && radiation.string("source", "paths") != "none";
+}
+
+}  // namespace
+
+Scene read_scene(TomlDocument& document) {
+  TomlTable root = document.root();
+  Scene scene;
+  TomlTable general = root.table("scene");
+  scene.name = general.string("name", "scene");
+  scene.end_time_s = general.number("end_time_s", {.unit = "s", .min = 0, .min_exclusive = true});
+  scene.gravity_m_s2 = general.vec3("gravity_m_s2", {.unit = "m/s2"}, Vec3{});
+  scene.materials = read_materials(root);
+  scene.feed.kind = read_feed_kind(root.table("feed"));
+  read_particles(root.table("particles"), scene);
+  read_geometry(root, scene, radiation_is_on(root));
+  read_feed(root.table("feed"), scene);
+  read_dem(root.table("dem"), scene);
+  if (scene.feed.kind == FeedSettings::Kind::plug && scene.gravity_m_s2 != Vec3{})
+    general.problem("gravity_m_s2", "must be zero with [feed] kind = \"plug\": particles would fall out of the plug");
+  return scene;
+}
+
+}  // namespace granrad

@@ -1,0 +1,197 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "dem/scene/error.h"
+#include "dem/scene/import_stl.h"
+#include "dem/scene/scene_parts.h"
+
+namespace granrad {
+
+namespace {
+
+/// A polygon's corners may leave its plane, and its edges bend inwards, by this part of its size.
+constexpr double flatness = 1e-6;
+
+class GeometryReader {
+ public:
+  GeometryReader(TomlTable root, Scene& scene, bool roles_required)
+      : root_(root), scene_(scene), roles_required_(roles_required) {}
+
+  void read() {
+    TomlTable box = root_.table("box");
+    const bool box_given = box.present();
+    if (box_given) read_box(box);
+    read_box_walls(box_given && box.boolean("walls", true));
+    for (auto& table : root_.tables("polygon")) add(table, {polygon(table)});
+    for (auto& table : root_.tables("mesh")) add(table, mesh(table));
+    if (!box_given) box_around_walls(box);
+    read_region(root_.table("region"));
+  }
+
+ private:
+  void read_box(TomlTable& box) {
+    const NumberRule length{.unit = "m", .min = 0, .min_exclusive = true};
+    scene_.box.min = box.vec3("origin_m", {.unit = "m"}, Vec3{});
+    scene_.box.max = scene_.box.min + box.vec3("size_m", length);
+    if (!box.has("periodic")) return;
+    for (const auto& direction : box.string_list("periodic")) {
+      if (direction == "x" || direction == "y" || direction == "z")
+        scene_.periodic[direction[0] - 'x'] = true;
+      else
+        box.problem("periodic", fmt::format("knows \"x\", \"y\" and \"z\", not \"{}\"", direction));
+    }
+  }
+
+  void read_box_walls(bool has_walls) {
+    TomlTable tables = root_.table("walls");
+    const auto walls = box_walls(scene_.box);
+    for (int face = 0; face < 6; ++face) {
+      TomlTable table = tables.table(walls[face].name);
+      if (has_walls && !scene_.periodic[face / 2]) {
+        Wall wall = walls[face];
+        wall.contact = !(scene_.feed.kind == FeedSettings::Kind::plug && face / 2 == 2);
+        read_properties(table, wall);
+        scene_.walls.push_back(std::move(wall));
+      } else if (table.present()) {
+        tables.problem(walls[face].name, has_walls ? "this wall does not exist: the box is periodic across it"
+                                                   : "this wall does not exist: the box has no walls");
+      }
+    }
+    scene_.box_wall_count = scene_.walls.size();
+  }
+
+  void read_properties(TomlTable& table, Wall& wall) {
+    const std::vector<std::string> roles{"isothermal", "adiabatic", "open", "excluded"};
+    if (roles_required_ && !table.has("role"))
+      table.problem("role", "missing: radiation is on, so every wall must choose \"isothermal\", \"adiabatic\", "
+                            "\"open\" or \"excluded\"");
+    const std::string role = table.choice("role", roles, "adiabatic");
+    wall.role = static_cast<WallRole>(std::find(roles.begin(), roles.end(), role) - roles.begin());
+    const bool has_temperature = wall.role == WallRole::isothermal || wall.role == WallRole::open;
+    if (has_temperature)
+      wall.temperature_K = table.number("temperature_K", {.unit = "K", .min = 0, .min_exclusive = true});
+    else if (table.has("temperature_K"))
+      table.problem("temperature_K", fmt::format("an {} wall has no temperature of its own: remove it, or choose "
+                                                 "role = \"isothermal\"", role));
+    if (wall.role == WallRole::open) {
+      wall.emissivity = 1;
+      if (table.has("emissivity"))
+        table.problem("emissivity", "an open wall is the black surroundings: remove it, or choose role = \"isothermal\"");
+    } else {
+      wall.emissivity = table.number(
+          "emissivity", {.min = 0, .max = 1, .min_exclusive = true, .why = "grey diffuse surface"},
+          scene_.materials[0].emissivity);
+    }
+    wall.contact = table.boolean("contact", wall.contact);
+    wall.velocity_m_s = table.vec3("velocity_m_s", {.unit = "m/s"}, Vec3{});
+    wall.opens_at_s = table.number("opens_at_s", {.unit = "s", .min = 0}, wall.opens_at_s);
+  }
+
+  Wall polygon(TomlTable& table) {
+    Wall wall;
+    wall.name = table.string("name");
+    wall.vertices = table.vec3_list("vertices_m", {.unit = "m"}, 3);
+    if (wall.vertices.size() >= 3)
+      if (const std::string fault = polygon_fault(wall); !fault.empty()) table.problem("vertices_m", fault);
+    return wall;
+  }
+
+  /// Why the corners are no planar convex polygon; "" when they are.
+  static std::string polygon_fault(const Wall& wall) {
+    const auto& v = wall.vertices;
+    double size = 0;
+    for (const auto& p : v) size = std::max(size, norm(p - v[0]));
+    if (!(area(wall) > flatness * size * size)) return "the polygon has no area, or crosses itself";
+    const Vec3 normal = polygon_normal(wall);
+    for (const auto& p : v)
+      if (std::abs(dot(normal, p - v[0])) > flatness * size)
+        return "the corners must lie in one plane; use triangles, or a [[mesh]]";
+    for (std::size_t k = 0; k < v.size(); ++k) {
+      const Vec3 edge = v[(k + 1) % v.size()] - v[k];
+      if (norm(edge) <= flatness * size) return fmt::format("corners {} and {} coincide", k, (k + 1) % v.size());
+      for (const auto& p : v)
+        if (dot(cross(normal, edge), p - v[k]) < -flatness * size * norm(edge))
+          return "the polygon must be convex; split it";
+    }
+    return "";
+  }
+
+  std::vector<Wall> mesh(TomlTable& table) {
+    const std::string name = table.string("name");
+    const double scale = table.number("scale", {.min = 0, .min_exclusive = true}, 1.0);
+    const auto file = table.file("file", true);
+    const bool flip = table.boolean("flip", false);
+    if (file.empty()) return {};
+    std::vector<Wall> walls;
+    try {
+      walls = import_stl(file, scale, name);
+    } catch (const Error& error) {
+      table.problem("file", error.what());
+    }
+    if (flip)
+      for (auto& wall : walls)
+        for (auto& triangle : wall.triangles) std::swap(triangle[1], triangle[2]);
+    return walls;
+  }
+
+  void add(TomlTable& table, std::vector<Wall> walls) {
+    Wall properties;
+    read_properties(table, properties);
+    for (auto& wall : walls) {
+      wall.role = properties.role;
+      wall.temperature_K = properties.temperature_K;
+      wall.emissivity = properties.emissivity;
+      wall.contact = properties.contact;
+      wall.velocity_m_s = properties.velocity_m_s;
+      wall.opens_at_s = properties.opens_at_s;
+      const auto same = [&](const Wall& other) { return other.name == wall.name; };
+      if (std::any_of(scene_.walls.begin(), scene_.walls.end(), same))
+        table.problem("name", fmt::format("another wall is called {}; names must differ", wall.name));
+      if (!wall.vertices.empty()) scene_.walls.push_back(std::move(wall));
+    }
+  }
+
+  void box_around_walls(TomlTable& box) {
+    if (scene_.walls.empty()) {
+      box.problem("", "missing: give [box] size_m, or walls by [[polygon]] or [[mesh]]");
+      scene_.box = {{0, 0, 0}, {1, 1, 1}};
+      return;
+    }
+    Box& around = scene_.box;
+    around = {scene_.walls[0].vertices[0], scene_.walls[0].vertices[0]};
+    for (const auto& wall : scene_.walls)
+      for (const auto& v : wall.vertices)
+        for (int axis = 0; axis < 3; ++axis) {
+          around.min[axis] = std::min(around.min[axis], v[axis]);
+          around.max[axis] = std::max(around.max[axis], v[axis]);
+        }
+  }
+
+  void read_region(TomlTable region) {
+    scene_.region.min = region.vec3("min_m", {.unit = "m"}, scene_.box.min);
+    scene_.region.max = region.vec3("max_m", {.unit = "m"}, scene_.box.max);
+    const Vec3 size = scene_.region.size();
+    const Box& box = scene_.box;
+    const double slack = flatness * norm(box.size());
+    if (!(size.x > 0 && size.y > 0 && size.z > 0))
+      region.problem("max_m", "must be above min_m in every direction");
+    for (int axis = 0; axis < 3; ++axis)
+      if (scene_.region.min[axis] < box.min[axis] - slack || scene_.region.max[axis] > box.max[axis] + slack) {
+        region.problem("", fmt::format("the region must lie inside the box, {} to {} along {}", box.min[axis],
+                                       box.max[axis], "xyz"[axis]));
+      }
+  }
+
+  TomlTable root_;
+  Scene& scene_;
+  bool roles_required_;
+};
+
+}  // namespace
+
+void read_geometry(TomlTable root, Scene& scene, bool roles_required) {
+  GeometryReader(root, scene, roles_required).read();
+}
+
+}  // namespace granrad

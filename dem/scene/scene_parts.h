@@ -1,0 +1,18 @@
+#pragma once
+#include "dem/scene/scene.h"
+
+namespace granrad {
+
+/// Pieces of read_scene; each reads its tables of the scene into `scene` and records problems in them.
+
+/// [box], [walls.*], [[polygon]], [[mesh]] and [region]. Preconditions: materials and feed.kind are read;
+/// `roles_required`: every wall must choose its role because radiation is on.
+void read_geometry(TomlTable root, Scene& scene, bool roles_required);
+
+/// kind of [feed], which other parts depend on.
+FeedSettings::Kind read_feed_kind(TomlTable feed);
+
+/// The rest of [feed]. Preconditions: materials, particles and box are read.
+void read_feed(TomlTable feed, Scene& scene);
+
+}  // namespace granrad

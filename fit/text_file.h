@@ -1,0 +1,11 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+namespace granrad {
+
+/// Writes `text` to a temporary name beside `file`, fsyncs and renames: the file is whole or not there.
+/// Creates the folder. Throws IoError (folder not writable, disk full).
+void write_text_file(const std::filesystem::path& file, const std::string& text);
+
+}  // namespace granrad

@@ -1,0 +1,24 @@
+#pragma once
+#include <vector>
+
+#include "raytrace/enclosure.h"
+
+namespace granrad {
+
+/// What the walls of an enclosure exchange among themselves, and with the surroundings through its openings.
+struct WallExchange {
+  std::size_t walls = 0;
+  std::vector<double> value;    ///< [walls * walls] X_vw = A_v F_vw through the bed, m^2, symmetric
+  std::vector<double> opening;  ///< [walls] fraction of the view that meets no wall when the box is empty
+};
+
+/// Extinction coefficient of a bed of equal spheres, 1/m: 3/2 phi / (d (1 - phi)). Its inverse is the mean
+/// chord between the spheres, 4 V_void / S, exact for any packing; the exponential law about it is exact for
+/// a dilute bed and an approximation for a dense one.
+double extinction_1_m(double solid_fraction, double diameter_m);
+
+/// X_vw = int int cos cos' / (pi s^2) exp(-extinction s) dA dA': exact geometry (32768 low-discrepancy rays a
+/// wall, error below 1e-3 of A_v) times Beer's law along each path.
+WallExchange wall_exchange(const Enclosure& enclosure, double extinction_1_m);
+
+}  // namespace granrad

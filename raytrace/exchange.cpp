@@ -1,0 +1,96 @@
+#include "raytrace/exchange.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace granrad {
+
+double count_variance_factor(const HitCounts& counts, std::size_t i, std::int64_t k) {
+  if (!counts.variance_factor.empty()) return counts.variance_factor[i];
+  const auto& by_count = counts.variance_factor_by_count;
+  if (by_count.empty()) return 1;
+  const auto hits = static_cast<std::uint64_t>(std::max<std::int64_t>(counts.hits[k], 1));
+  return by_count[std::min<std::size_t>(std::bit_width(hits) - 1, by_count.size() - 1)];
+}
+
+ExchangeAreas one_way_estimate(const HitCounts& counts) {
+  ExchangeAreas estimate;
+  estimate.pattern = counts.pattern;
+  estimate.area_m2 = counts.area_m2;
+  estimate.value.resize(counts.hits.size());
+  estimate.variance.resize(counts.hits.size());
+  for (std::size_t i = 0; i < counts.launched.size(); ++i) {
+    const double n = static_cast<double>(counts.launched[i]), area = counts.area_m2[i];
+    estimate.rays_per_m2.push_back(area > 0 ? n / area : 0);
+    for (std::int64_t k = counts.pattern.row_begin[i]; k < counts.pattern.row_begin[i + 1]; ++k) {
+      const double hits = static_cast<double>(counts.hits[k]), p = (hits + 0.5) / (n + 1);
+      estimate.value[k] = area * hits / n;
+      estimate.variance[k] = area * area * p * (1 - p) / n * count_variance_factor(counts, i, k);
+    }
+  }
+  return estimate;
+}
+
+ExchangeAreas drop_surfaces(const ExchangeAreas& estimate, const std::vector<char>& dropped) {
+  ExchangeAreas kept;
+  kept.area_m2 = estimate.area_m2;
+  kept.rays_per_m2 = estimate.rays_per_m2;
+  kept.pattern.row_begin.push_back(0);
+  for (std::size_t i = 0; i < dropped.size(); ++i) {
+    if (dropped[i]) kept.area_m2[i] = 0;
+    for (std::int64_t k = estimate.pattern.row_begin[i]; k < estimate.pattern.row_begin[i + 1]; ++k) {
+      const std::int32_t j = estimate.pattern.column[k];
+      if (dropped[i] || dropped[static_cast<std::size_t>(j)]) continue;
+      kept.pattern.column.push_back(j);
+      kept.value.push_back(estimate.value[k]);
+      if (!estimate.variance.empty()) kept.variance.push_back(estimate.variance[k]);
+    }
+    kept.pattern.row_begin.push_back(static_cast<std::int64_t>(kept.pattern.column.size()));
+  }
+  return kept;
+}
+
+double zero_hit_bound_m2(const HitCounts& counts, std::size_t i, std::size_t j) {
+  const auto density = [&](std::size_t s) {
+    return counts.area_m2[s] > 0 ? static_cast<double>(counts.launched[s]) / counts.area_m2[s] : 0;
+  };
+  return -std::log(0.01) / (density(i) + density(j));
+}
+
+SparsePattern symmetrized(const SparsePattern& pattern) {
+  const std::size_t n = pattern.row_begin.size() - 1;
+  // The transpose, rows ascending because sources are visited in ascending order.
+  std::vector<std::int64_t> begin(n + 1, 0);
+  for (const std::int32_t j : pattern.column) ++begin[static_cast<std::size_t>(j) + 1];
+  for (std::size_t i = 0; i < n; ++i) begin[i + 1] += begin[i];
+  std::vector<std::int32_t> source(pattern.column.size());
+  std::vector<std::int64_t> next(begin.begin(), begin.end() - 1);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::int64_t k = pattern.row_begin[i]; k < pattern.row_begin[i + 1]; ++k)
+      source[next[pattern.column[k]]++] = static_cast<std::int32_t>(i);
+
+  const auto row = [&](std::size_t i) { return pattern.column.begin() + pattern.row_begin[i]; };
+  SparsePattern both;
+  both.row_begin.assign(n + 1, 0);
+  for (std::size_t i = 0; i < n; ++i) {  // count first: the union may be large
+    auto a = row(i), a_end = row(i + 1);
+    auto b = source.begin() + begin[i], b_end = source.begin() + begin[i + 1];
+    std::int64_t size = 0;
+    for (; a != a_end || b != b_end; ++size) {
+      const bool take_a = b == b_end || (a != a_end && *a <= *b),
+                 take_b = a == a_end || (b != b_end && *b <= *a);
+      a += take_a;
+      b += take_b;
+    }
+    both.row_begin[i + 1] = both.row_begin[i] + size;
+  }
+  both.column.resize(static_cast<std::size_t>(both.row_begin[n]));
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < n; ++i)
+    std::set_union(row(i), row(i + 1), source.begin() + begin[i], source.begin() + begin[i + 1],
+                   both.column.begin() + both.row_begin[i]);
+  return both;
+}
+
+}  // namespace granrad

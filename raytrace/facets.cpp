@@ -1,0 +1,186 @@
+#include "raytrace/facets.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "dem/scene/error.h"
+
+namespace granrad {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// What of `polygon` lies at non-negative height above a plane (Sutherland-Hodgman, one step).
+std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, const Vec3& normal, double offset) {
+  std::vector<Vec3> kept;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec3 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
+    const double ha = dot(normal, a) - offset, hb = dot(normal, b) - offset;
+    if (ha >= 0) kept.push_back(a);
+    if ((ha < 0) != (hb < 0)) kept.push_back(a + (b - a) * (ha / (ha - hb)));
+  }
+  return kept;
+}
+
+/// A square of the plane through its foot of the origin, with the given half width.
+std::vector<Vec3> large_square(const Vec3& normal, double offset, double half_width) {
+  const Vec3 axis = std::abs(normal.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 u = normalized(cross(normal, axis)) * half_width, v = cross(normal, u), foot = normal * offset;
+  return {foot - u - v, foot + u - v, foot + u + v, foot - u + v};
+}
+
+double polygon_area(const std::vector<Vec3>& vertices) {
+  return vertices.size() < 3 ? 0 : granrad::area(Wall{.vertices = vertices});
+}
+
+}  // namespace
+
+void Facets::add(const Wall& wall, std::int32_t number, const Vec3& origin, double scale) {
+  std::vector<Vec3> moved;
+  for (const Vec3& v : wall.vertices) moved.push_back((v - origin) * scale);
+  if (!wall.is_polygon()) {
+    for (const auto& t : wall.triangles) {
+      const Vec3 doubled = cross(moved[t[1]] - moved[t[0]], moved[t[2]] - moved[t[0]]);
+      if (norm(doubled) > tolerance_ * tolerance_) add_piece({moved[t[0]], moved[t[1]], moved[t[2]]}, number);
+    }
+    return;
+  }
+  if (moved.size() < 3 || !(polygon_area(moved) > tolerance_ * tolerance_))
+    throw InputError(
+        fmt::format("wall '{}': {} vertices without area (a polygon needs three that are not "
+                    "on a line)",
+                    wall.name, moved.size()));
+  add_piece(moved, number);
+  const std::int32_t facet = count() - 1;
+  double size = 0;
+  for (const Vec3& v : moved) size = std::max(size, norm(v - moved[0]));
+  for (const Vec3& v : moved) {
+    if (std::abs(height(facet, v)) > 1e-6 * size)
+      throw InputError(
+          fmt::format("wall '{}': vertices are not in one plane (split it into planar polygons)", wall.name));
+    if (edge_margin(facet, v) < -1e-6 * size)
+      throw InputError(fmt::format("wall '{}': not convex (split it into convex polygons)", wall.name));
+  }
+}
+
+void Facets::add_piece(std::vector<Vec3> vertices, std::int32_t wall) {
+  const Wall polygon{.vertices = vertices};
+  const Vec3 n = polygon_normal(polygon);
+  double offset = 0;
+  for (const Vec3& v : vertices) offset += dot(n, v) / static_cast<double>(vertices.size());
+  for (std::size_t k = 0; k < vertices.size(); ++k) {
+    const Vec3 edge = vertices[(k + 1) % vertices.size()] - vertices[k];
+    if (norm(edge) <= tolerance_) continue;
+    const Vec3 inward = normalized(cross(n, edge));
+    edges_.push_back({inward, dot(inward, vertices[k])});
+  }
+  normal_.push_back(n);
+  offset_.push_back(offset);
+  area_.push_back(granrad::area(polygon));
+  wall_.push_back(wall);
+  edge_begin_.push_back(static_cast<std::int32_t>(edges_.size()));
+  vertices_.push_back(std::move(vertices));
+}
+
+double Facets::edge_margin(std::int32_t facet, const Vec3& p) const {
+  double margin = infinity;
+  for (std::int32_t e = edge_begin_[facet]; e < edge_begin_[facet + 1]; ++e)
+    margin = std::min(margin, dot(edges_[e].inward, p) - edges_[e].offset);
+  return margin;
+}
+
+double Facets::front_crossing(std::int32_t facet, const Vec3& origin, const Vec3& direction) const {
+  const double approach = -dot(normal_[facet], direction);
+  if (!(approach > 0)) return infinity;
+  const double h = height(facet, origin);
+  if (h < -tolerance_) return infinity;
+  const double t = std::max(0.0, h / approach);
+  return edge_margin(facet, origin + t * direction) >= -tolerance_ ? t : infinity;
+}
+
+double Facets::back_crossing(std::int32_t facet, const Vec3& origin, const Vec3& direction) const {
+  const double approach = dot(normal_[facet], direction);
+  if (!(approach > 0)) return infinity;
+  const double t = -height(facet, origin) / approach;
+  if (t <= tolerance_) return infinity;
+  return edge_margin(facet, origin + t * direction) >= tolerance_ ? t : infinity;
+}
+
+std::optional<double> Facets::enclosed_volume() const {
+  Vec3 vector_area;
+  double total = 0, volume = 0;
+  for (std::int32_t f = 0; f < count(); ++f) {
+    vector_area += area_[f] * normal_[f];
+    total += area_[f];
+    volume -= offset_[f] * area_[f] / 3;  // normals point into the void
+  }
+  if (count() < 4 || norm(vector_area) > 1e-9 * total || !(volume > 0)) return {};
+  return volume;
+}
+
+std::optional<ConvexCell> ConvexCell::from(const Facets& facets) {
+  constexpr std::int32_t most_planes = 64;  // beyond, a tree over the facets is faster than all planes
+  if (facets.count() < 4 || facets.count() > most_planes) return {};
+  double size = 0;
+  for (std::int32_t f = 0; f < facets.count(); ++f)
+    for (const Vec3& v : facets.vertices(f)) size = std::max(size, norm(v));
+  const double slack = std::max(facets.tolerance(), 1e-9 * size);
+
+  ConvexCell cell;
+  for (std::int32_t f = 0; f < facets.count(); ++f) {
+    for (std::int32_t g = 0; g < facets.count(); ++g)
+      for (const Vec3& v : facets.vertices(g))
+        if (facets.height(f, v) < -slack) return {};
+    const auto same_plane = [&](const std::vector<std::int32_t>& face) {
+      return norm(facets.normal(face[0]) - facets.normal(f)) < 1e-9 &&
+             std::abs(facets.offset(face[0]) - facets.offset(f)) < slack;
+    };
+    const auto face = std::find_if(cell.faces_.begin(), cell.faces_.end(), same_plane);
+    if (face == cell.faces_.end())
+      cell.faces_.push_back({f});
+    else
+      face->push_back(f);
+  }
+  // No hole: the pieces of each plane cover the whole face that the other planes cut out of it.
+  for (const auto& face : cell.faces_) {
+    std::vector<Vec3> whole = large_square(facets.normal(face[0]), facets.offset(face[0]), 8 * size);
+    for (const auto& other : cell.faces_)
+      if (&other != &face) whole = clipped(whole, facets.normal(other[0]), facets.offset(other[0]));
+    double covered = 0;
+    for (const std::int32_t f : face) covered += facets.area(f);
+    const double area = polygon_area(whole);
+    if (std::abs(covered - area) > 1e-6 * area) return {};
+  }
+  return cell;
+}
+
+FacetHit ConvexCell::exit(const Facets& facets, const Vec3& origin, const Vec3& direction) const {
+  const std::vector<std::int32_t>* nearest = nullptr;
+  double distance = infinity, deepest = -facets.tolerance();
+  bool behind = false;
+  for (const auto& face : faces_) {
+    const double h = facets.height(face[0], origin), approach = -dot(facets.normal(face[0]), direction);
+    if (h < deepest) {
+      deepest = h;
+      distance = 0;
+      behind = true;
+      nearest = &face;
+    } else if (!behind && approach > 0 && h < distance * approach) {
+      distance = std::max(0.0, h / approach);
+      nearest = &face;
+    }
+  }
+  if (!nearest) return {infinity, -1};
+  if (nearest->size() == 1) return {distance, nearest->front()};
+  const Vec3 p = origin + distance * direction;
+  const auto margin_less = [&](std::int32_t a, std::int32_t b) {
+    return facets.edge_margin(a, p) < facets.edge_margin(b, p);
+  };
+  return {distance, *std::max_element(nearest->begin(), nearest->end(), margin_less)};
+}
+
+}  // namespace granrad

@@ -1,0 +1,172 @@
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "dem/scene/error.h"
+#include "raytrace/line_chords.h"
+#include "raytrace/line_counts.h"
+#include "raytrace/line_pass.h"
+#include "raytrace/line_plan.h"
+#include "raytrace/line_sweep.h"
+
+namespace granrad {
+
+namespace {
+
+/// Bytes at the peak for each ordered pair held: its slot at a load of 3/8 .. 3/4, then both triangles of the
+/// result.
+constexpr std::size_t bytes_per_pair = 96;
+constexpr std::size_t buffer_bytes_per_row = 2048;
+
+struct Sweep {
+  SymmetricCounts counts;
+  double unit_m2;  ///< X = unit S
+  double mean_chord_m;
+  std::int64_t leaked, ends;
+};
+
+void consume_discs(PairCounts::Buffer& buffer, const std::int32_t* p, const std::int32_t* end) {
+  const auto length = [](const std::int32_t* record) { return 3 + (record[2] >> 16); };
+  const std::int32_t* ahead = p;
+  for (int k = 0; k < 8 && ahead < end; ++k) ahead += length(ahead);
+  while (p < end) {
+    if (ahead < end) {
+      buffer.prefetch(*ahead);
+      ahead += length(ahead);
+    }
+    const std::int32_t n = length(p) - 3;
+    buffer.append(p[0], p + 3, n);
+    p += 3 + n;
+  }
+}
+
+void consume_walls(PairCounts::Buffer& buffer, std::int32_t surface, const std::int32_t* ids,
+                   std::int64_t n) {
+  for (std::int64_t k = 0; k < n; k += buffer.bunch())
+    buffer.append(surface, ids + k, static_cast<std::int32_t>(std::min<std::int64_t>(n - k, buffer.bunch())));
+}
+
+Sweep sweep(const LineScene& scene, const LineOptions& options, int directions) {
+  const std::size_t surfaces = scene.surface_count();
+  const std::size_t buffer_bytes =
+      std::clamp<std::size_t>(surfaces * buffer_bytes_per_row, 1 << 20, options.memory_limit_bytes / 8);
+  PairCounts counts(surfaces, options.memory_limit_bytes / bytes_per_pair);
+  [[maybe_unused]] const int threads = line_threads(options.threads);
+  const int block = static_cast<int>(
+      std::clamp<std::size_t>(options.memory_limit_bytes / bytes_per_pair / (16 * surfaces + 1), 4,
+                              static_cast<std::size_t>(directions)));
+  std::int64_t leaked = 0;
+  ChordSums chords;
+#pragma omp parallel num_threads(threads) reduction(+ : leaked)
+  {
+    LinePass pass(scene);
+    PairCounts::Buffer buffer(counts, buffer_bytes);
+    for (int replicate = 0; replicate < options.replicates; ++replicate) {
+      for (int from = 0; from < directions; from += block) {
+#pragma omp for schedule(dynamic)
+        for (int k = from; k < std::min(directions, from + block); ++k) {
+          pass.aim(line_frame(options.seed, replicate, k, directions));
+          pass.emit([&](const std::int32_t* p, const std::int32_t* end) { consume_discs(buffer, p, end); },
+                    [&](std::int32_t w, const std::int32_t* ids, std::int64_t n) {
+                      consume_walls(buffer, w, ids, n);
+                    });
+        }
+        buffer.flush();
+#pragma omp barrier
+#pragma omp single
+        counts.keep_within_limit(options.seed);
+      }
+#pragma omp single
+      {
+        pass.aim(line_frame(options.seed, replicate, 0, directions));
+        chords += chord_sums(pass);
+        counts.end_replicate();
+      }
+    }
+    leaked += pass.leaked();
+  }
+  std::vector<char> kind(surfaces, 1);
+  std::fill_n(kind.begin(), scene.x.size(), 0);
+  SymmetricCounts result = counts.finish(kind);
+  std::int64_t ends = 0;
+  for (auto c : result.count) ends += c;
+  return {std::move(result),
+          2 * scene.spacing * scene.spacing / (static_cast<double>(directions) * options.replicates),
+          chords.mean(), leaked, ends};
+}
+
+/// Standard error of the particles' sums over walls and surroundings, rms relative to their mean.
+double relative_wall_sum_error(const SymmetricCounts& counts, std::size_t spheres) {
+  double variance = 0, sum = 0;
+  for (std::size_t i = 0; i < spheres; ++i)
+    for (std::int64_t k = counts.pattern.row_begin[i]; k < counts.pattern.row_begin[i + 1]; ++k)
+      if (static_cast<std::size_t>(counts.pattern.column[k]) >= spheres) {
+        sum += static_cast<double>(counts.count[k]);
+        variance += counts.variance[k];
+      }
+  return sum > 0 ? std::sqrt(variance * static_cast<double>(spheres)) / sum : 0;
+}
+
+Sweep sweep_to_target(const LineScene& scene, const LineOptions& options, LineReport* report) {
+  int directions = options.directions;
+  for (;;) {
+    Sweep result = sweep(scene, options, directions);
+    const double error = relative_wall_sum_error(result.counts, scene.x.size());
+    if (options.target_error <= 0 || error <= options.target_error) {
+      if (report) *report = {result.ends, directions, scene.spacing, error, result.counts.thinning_unit};
+      return result;
+    }
+    directions = more_directions(directions, error, options.target_error);
+  }
+}
+
+}  // namespace
+
+HitCounts sweep_view_factors(const Enclosure& enclosure, const LineOptions& options, LineReport* report) {
+  check_line_options(options);
+  const LineScene scene(enclosure, options.lines_per_disc);
+  Sweep s = sweep_to_target(scene, options, report);
+  const SymmetricCounts& counts = s.counts;
+  const std::size_t n = scene.surface_count();
+  HitCounts hits;
+  hits.area_m2 = surface_areas(enclosure);
+  hits.leaked = s.leaked;
+  hits.mean_chord_m = s.mean_chord_m;
+  hits.launched.assign(n, 0);
+  hits.variance_factor.assign(n, 1);
+  hits.pattern = counts.pattern;
+  hits.hits = counts.count;
+  for (std::size_t i = 0; i < n; ++i) {
+    double variance = 0;
+    for (std::int64_t k = counts.pattern.row_begin[i]; k < counts.pattern.row_begin[i + 1]; ++k) {
+      hits.launched[i] += counts.count[k];
+      variance += counts.variance[k];
+    }
+    if (hits.launched[i] > 0) hits.variance_factor[i] = 2 * variance / static_cast<double>(hits.launched[i]);
+  }
+  const auto open_row = static_cast<std::size_t>(hits.pattern.row_begin[n - 1]);
+  hits.pattern.column.resize(open_row), hits.hits.resize(open_row);
+  hits.pattern.row_begin[n] = hits.pattern.row_begin[n - 1];
+  hits.launched[n - 1] = 0;
+  return hits;
+}
+
+ExchangeAreas sweep_exchange_areas(const Enclosure& enclosure, const LineOptions& options,
+                                   LineReport* report) {
+  check_line_options(options);
+  const LineScene scene(enclosure, options.lines_per_disc);
+  Sweep s = sweep_to_target(scene, options, report);
+  ExchangeAreas areas;
+  areas.area_m2 = surface_areas(enclosure);
+  areas.pattern = std::move(s.counts.pattern);
+  areas.variance = std::move(s.counts.variance);
+  for (double& v : areas.variance) v *= s.unit_m2 * s.unit_m2;
+  areas.value.reserve(s.counts.count.size());
+  for (const std::int64_t c : s.counts.count) areas.value.push_back(s.unit_m2 * static_cast<double>(c));
+  return areas;
+}
+
+}  // namespace granrad

@@ -1,0 +1,178 @@
+#include "raytrace/line_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "dem/scene/constants.h"
+#include "dem/scene/error.h"
+
+namespace granrad {
+
+namespace {
+
+constexpr double max_cells = 67108864;  // 2^26 lines of 4 bytes: 256 MiB per thread
+/// Corners closer than this share of the enclosure's size are one corner; planarity and convexity are judged
+/// by it.
+constexpr double corner_tolerance = 1e-7;
+
+struct Bounds {
+  Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+  void include(const Vec3& p, double margin = 0) {
+    for (int k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], p[k] - margin);
+      high[k] = std::max(high[k], p[k] + margin);
+    }
+  }
+  Vec3 middle() const { return low.x > high.x ? Vec3{} : 0.5 * (low + high); }
+  double diameter() const { return low.x > high.x ? 0 : norm(high - low); }
+  std::vector<Vec3> corners() const {
+    std::vector<Vec3> all;
+    for (int k = 0; k < 8; ++k)
+      all.push_back({k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z});
+    return all;
+  }
+};
+
+/// Problems that make the enclosure unfit before any geometry can be judged.
+std::vector<std::string> shape_problems(const Enclosure& e) {
+  std::vector<std::string> problems;
+  for (int k = 0; k < 3; ++k)
+    if (e.periodic[k])
+      problems.push_back(
+          fmt::format("lines: periodic direction {} (a line never ends there) try embree", "xyz"[k]));
+  for (const Wall& wall : e.walls)
+    if (!wall.is_polygon())
+      problems.push_back(
+          fmt::format("lines: wall {} = mesh (lines need convex polygons) try embree", wall.name));
+    else if (wall.vertices.size() < 3 || !std::all_of(wall.vertices.begin(), wall.vertices.end(), is_finite))
+      problems.push_back(fmt::format("lines: wall {} (needs three finite vertices or more)", wall.name));
+  for (std::size_t i = 0; i < e.sphere_count(); ++i)
+    if (!is_finite(e.centre_m[i]) || !(e.radius_m[i] > 0) || !std::isfinite(e.radius_m[i])) {
+      problems.push_back(fmt::format("lines: particle {} = ({}, {}, {}), radius {} (must be finite)", i,
+                                     e.centre_m[i].x, e.centre_m[i].y, e.centre_m[i].z, e.radius_m[i]));
+      break;
+    }
+  return problems;
+}
+
+/// Replaces corners that nearly coincide by one, so that faces share edges bit by bit.
+void weld(std::vector<LineScene::Face>& faces, double tolerance) {
+  std::vector<Vec3> known;
+  for (auto& face : faces)
+    for (Vec3& p : face.corners) {
+      const auto same =
+          std::find_if(known.begin(), known.end(), [&](const Vec3& q) { return norm(p - q) < tolerance; });
+      if (same == known.end())
+        known.push_back(p);
+      else
+        p = *same;
+    }
+}
+
+/// Every directed edge has its reverse exactly once.
+bool edges_close(const std::vector<LineScene::Face>& faces) {
+  using Key = std::array<double, 6>;
+  std::map<Key, int> balance;
+  for (const auto& face : faces)
+    for (std::size_t k = 0; k < face.corners.size(); ++k) {
+      const Vec3 &a = face.corners[k], &b = face.corners[(k + 1) % face.corners.size()];
+      const Key forward{a.x, a.y, a.z, b.x, b.y, b.z}, back{b.x, b.y, b.z, a.x, a.y, a.z};
+      if (forward < back)
+        ++balance[forward];
+      else
+        --balance[back];
+    }
+  return !faces.empty() &&
+         std::all_of(balance.begin(), balance.end(), [](const auto& e) { return e.second == 0; });
+}
+
+std::vector<std::string> convexity_problems(const Enclosure& e, const std::vector<LineScene::Face>& faces,
+                                            double tolerance) {
+  std::vector<std::string> problems;
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    for (std::size_t g = 0; g < faces.size(); ++g) {
+      const auto outside = [&](const Vec3& p) {
+        return dot(p - faces[f].corners[0], faces[f].normal) < -tolerance;
+      };
+      if (std::any_of(faces[g].corners.begin(), faces[g].corners.end(), outside))
+        problems.push_back(
+            fmt::format("lines: wall {} stands behind wall {} (the walls must bound a convex space) "
+                        "try embree",
+                        e.walls[g].name, e.walls[f].name));
+    }
+  return problems;
+}
+
+}  // namespace
+
+LineSpheres LineScene::spheres() const {
+  const float largest = reach.empty() ? 0 : *std::max_element(reach.begin(), reach.end());
+  return {static_cast<std::int32_t>(x.size()), x.data(), y.data(), z.data(), reach.data(), largest};
+}
+
+LineScene::LineScene(const Enclosure& enclosure, double lines_per_disc)
+    : radius(enclosure.radius_m), open_surface(static_cast<std::int32_t>(enclosure.open_surface())) {
+  auto problems = shape_problems(enclosure);
+  if (!(lines_per_disc > 0))
+    problems.push_back(fmt::format("lines: lines_per_disc = {} (must be > 0)", lines_per_disc));
+  if (!problems.empty()) throw InputError(problems);
+
+  Bounds all;
+  for (const Wall& wall : enclosure.walls)
+    for (const Vec3& p : wall.vertices) all.include(p);
+  for (std::size_t i = 0; i < radius.size(); ++i) all.include(enclosure.centre_m[i], radius[i]);
+  const Vec3 middle = all.middle();
+  const double tolerance = corner_tolerance * all.diameter();
+
+  for (std::size_t w = 0; w < enclosure.walls.size(); ++w) {
+    Face face{enclosure.walls[w].vertices, polygon_normal(enclosure.walls[w]),
+              static_cast<std::int32_t>(radius.size() + w)};
+    for (Vec3& p : face.corners) p -= middle;
+    faces.push_back(std::move(face));
+  }
+  weld(faces, tolerance);
+  problems = convexity_problems(enclosure, faces, tolerance);
+  closed = edges_close(faces);
+
+  double protrusion = 0;
+  for (std::size_t i = 0; i < radius.size(); ++i) {
+    const Vec3 p = enclosure.centre_m[i] - middle;
+    x.push_back(p.x), y.push_back(p.y), z.push_back(p.z);
+    for (const Face& face : faces) {
+      const double distance = dot(p - face.corners[0], face.normal);
+      protrusion = std::max(protrusion, radius[i] - distance);
+      if (distance < 0 && problems.size() < 20)
+        problems.push_back(
+            fmt::format("lines: particle {} at ({}, {}, {}) stands {} m behind wall {} try another "
+                        "region, or embree",
+                        i, enclosure.centre_m[i].x, enclosure.centre_m[i].y, enclosure.centre_m[i].z,
+                        -distance, enclosure.walls[face.surface - radius.size()].name));
+    }
+  }
+  if (!problems.empty()) throw InputError(problems);
+
+  const bool walls_hold_all = closed && protrusion <= 0;
+  if (walls_hold_all)
+    for (const Face& face : faces) hull.insert(hull.end(), face.corners.begin(), face.corners.end());
+  else
+    for (const Vec3& p : all.corners()) hull.push_back(p - middle);
+
+  if (radius.empty()) {
+    double area_sum = 0;
+    for (const Wall& wall : enclosure.walls) area_sum += area(wall);
+    spacing = faces.empty() ? 1 : std::sqrt(area_sum / faces.size() / 4096);
+  } else {
+    std::vector<double> sorted = radius;
+    const auto tenth = sorted.begin() + sorted.size() / 10;
+    std::nth_element(sorted.begin(), tenth, sorted.end());
+    spacing = *tenth * std::sqrt(pi / lines_per_disc);
+  }
+  spacing = std::max(spacing, all.diameter() / std::sqrt(max_cells));
+  for (double r : radius) reach.push_back(static_cast<float>(r / spacing));
+}
+
+}  // namespace granrad

@@ -1,0 +1,35 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "raytrace/enclosure.h"
+#include "raytrace/line_kernel.h"
+
+namespace granrad {
+
+/// An enclosure made ready for parallel lines: checked, recentred on its middle, column by column.
+struct LineScene {
+  struct Face {
+    std::vector<Vec3> corners;
+    Vec3 normal;  ///< inward
+    std::int32_t surface;
+  };
+
+  std::vector<double> x, y, z, radius;  ///< m, from the middle
+  std::vector<float> reach;             ///< radius / spacing
+  std::vector<Face> faces;
+  std::vector<Vec3> hull;  ///< points whose hull holds everything a line may meet
+  bool closed = false;     ///< the faces meet edge to edge: no line escapes
+  double spacing = 1;      ///< m, between lines
+  std::int32_t open_surface = 0;
+
+  std::size_t surface_count() const { return static_cast<std::size_t>(open_surface) + 1; }
+  LineSpheres spheres() const;
+
+  /// Spacing such that `lines_per_disc` lines meet a disc of the 10 % quantile of the radii (without spheres:
+  /// the mean face is met by 4096 lines), but never more lines than 2^26 in one direction. Throws InputError
+  /// with every problem found.
+  LineScene(const Enclosure& enclosure, double lines_per_disc);
+};
+
+}  // namespace granrad

@@ -1,0 +1,2 @@
+# tests of the house itself
+granrad_test(unit/layering granrad_flags)

@@ -1,0 +1,121 @@
+// A table gives the printed formula in its own convention, stays within the physical bounds, interpolates
+// between its solid fractions and refuses to leave them.
+#include "fit/correlation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dem/scene/error.h"
+#include "raytrace/exact.h"
+
+namespace granrad {
+namespace {
+
+CorrelationTable printed() {
+  return read_correlation(std::string(GRANRAD_SOURCE_DIR) + "/data/correlations/li_2024_printed.toml");
+}
+
+CorrelationTable transmittance() {
+  CorrelationTable table;
+  table.form = CorrelationForm::transmittance;
+  table.rows = {{0.2, {0.2, 1.7}, {0.97, 0.6, 1.0}, {}}, {0.4, {0.7, 2.2}, {0.82, 1.5, 1.2}, {}}};
+  return table;
+}
+
+TEST(PrintedTable, HasEveryDigitOfThePaper) {
+  const auto table = printed();
+  ASSERT_EQ(table.rows.size(), 8u);
+  EXPECT_EQ(table.pw_distance, WallDistance::h_plus_r_over_d);
+  // Computed by hand from the printed digits: F_pp(2), F_pp(4) and F_pw at (h + r)/d = 2, that is h/d = 1.5.
+  EXPECT_NEAR(raw_pp(table, table.rows[0], 2), -1.1e-5 - 0.0006 + 0.0145 + 0.002, 1e-15);
+  EXPECT_NEAR(raw_pp(table, table.rows[1], 4), 2.6e-4 - 0.002 + 0.0044375 + 0.000171875, 1e-15);
+  EXPECT_NEAR(raw_pp(table, table.rows[7], 2), 1.3e-5 + 0.0015 - 0.011 + 0.015, 1e-15);
+  EXPECT_NEAR(raw_pw(table, table.rows[3], 1.5, 0), 0.018 - 0.18 + 0.45 - 0.1375, 1e-15);
+  EXPECT_NEAR(raw_pw(table, table.rows[6], 0.5, 0), 0.017 - 0.28 + 0.93 - 0.33, 1e-15);
+  EXPECT_NEAR(raw_pw(table, table.rows[0], 0.5, 0), 0.61, 1e-12);
+}
+
+TEST(PrintedTable, IsHeldWithinTheBounds) {
+  const auto table = printed();
+  for (const auto& row : table.rows) {
+    const Correlation c(table, row.solid_fraction);
+    for (double d = 0.98; d < 12; d += 0.01) {
+      EXPECT_GE(c.pp(d), 0);
+      EXPECT_LE(c.pp(d), exact_two_sphere(0.5, 0.5, d) + 1e-6);
+      EXPECT_GE(c.pw(d, 0.5), 0);
+      EXPECT_LE(c.pw(d, 0.5), 0.5);
+    }
+    EXPECT_EQ(c.pp(10), 0);
+    EXPECT_EQ(c.pw(9.5, 0.5), 0);  // (h + r)/d = 10
+  }
+  EXPECT_EQ(Correlation(table, 0.02).pw(0.5, 0.5), 0.5);  // printed: 0.61
+  EXPECT_EQ(Correlation(table, 0.43).pp(6), 0);           // printed: negative
+}
+
+// Planted error: h/d read as (h + r)/d -> 0.28 instead of 0.337 here.
+TEST(WallConvention, MovesContactFromHalfToOne) {
+  auto table = printed();
+  const double at_contact = raw_pw(table, table.rows[6], 0.5, 0);
+  EXPECT_NEAR(at_contact, 0.337, 1e-12);
+  table.pw_distance = WallDistance::centre_to_plane_over_d;
+  EXPECT_NEAR(raw_pw(table, table.rows[6], 1.0, 0), at_contact, 1e-15);
+}
+
+TEST(Transmittance, IsTheExactFactorTimesWhatGetsThrough) {
+  const auto table = transmittance();
+  EXPECT_NEAR(raw_pp(table, table.rows[0], 3),
+              exact_two_sphere(0.5, 0.5, 3) * std::exp(-0.2 * std::pow(2, 1.7)), 1e-15);
+  EXPECT_NEAR(raw_pw(table, table.rows[1], 2.5, 0.3), 0.3 * 0.82 * std::exp(-1.5 * std::pow(2, 1.2)), 1e-15);
+  EXPECT_EQ(raw_pp(table, table.rows[0], 1), exact_two_sphere(0.5, 0.5, 1));
+}
+
+TEST(Correlation, TabulatesItsPairFunction) {
+  for (const auto& table : {printed(), transmittance()})
+    for (const auto& row : table.rows) {
+      const Correlation c(table, row.solid_fraction);
+      for (double d = 1; d < table.pp_cutoff; d += 0.00137) {
+        const double held = std::clamp(raw_pp(table, row, d), 0.0, exact_two_sphere(0.5, 0.5, d));
+        ASSERT_NEAR(c.pp(d), held, 3e-5) << row.solid_fraction << " " << d;
+      }
+    }
+}
+
+TEST(Correlation, OverlappingSpheresTakeTheValueAtContact) {
+  const Correlation c(transmittance(), 0.2);
+  EXPECT_EQ(c.pp(0.95), c.pp(1));
+  EXPECT_EQ(c.pw(0.45, 0.5), c.pw(0.5, 0.5));
+}
+
+TEST(Correlation, InterpolatesLinearlyInTheSolidFraction) {
+  const auto table = transmittance();
+  const Correlation low(table, 0.2), middle(table, 0.25), high(table, 0.4);
+  for (const double d : {1.0, 1.3, 2.0, 5.0})
+    EXPECT_NEAR(middle.pp(d), 0.75 * low.pp(d) + 0.25 * high.pp(d), 1e-15);
+  EXPECT_NEAR(middle.pw(1.2, 0.3), 0.75 * low.pw(1.2, 0.3) + 0.25 * high.pw(1.2, 0.3), 1e-15);
+  EXPECT_NEAR(Correlation(printed(), 0.25).pp(1.7), Correlation(printed(), 0.25 + 1e-9).pp(1.7), 1e-9);
+}
+
+TEST(Correlation, RefusesToExtrapolateAndStatesItsBounds) {
+  const auto table = printed();
+  for (const double phi : {0.0, -0.1, 0.0195, 0.4897, 0.6, std::nan("")}) {
+    try {
+      Correlation(table, phi);
+      ADD_FAILURE() << phi << " accepted";
+    } catch (const InputError& error) {
+      const std::string text = error.what();
+      EXPECT_NE(text.find("0.02 to 0.48"), std::string::npos) << text;
+      EXPECT_NE(text.find("li_2024_printed.toml"), std::string::npos) << text;
+    }
+  }
+}
+
+TEST(Correlation, ServesTwoPercentBeyondItsEndsWithTheEndRow) {
+  const auto table = printed();
+  EXPECT_EQ(Correlation(table, 0.0197).pp(2), Correlation(table, 0.02).pp(2));
+  EXPECT_EQ(Correlation(table, 0.489).pp(2), Correlation(table, 0.48).pp(2));
+}
+
+}  // namespace
+}  // namespace granrad
