@@ -78,7 +78,7 @@ Conductances conductances(const Bed& bed, const NearPairs& pairs, const Conducti
 
   Conductances result;
   result.particles.resize(pairs.particles.size());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (pairs.particles.size() >= 1000)
   for (std::size_t k = 0; k < pairs.particles.size(); ++k) {
     const auto [i, j, distance] = pairs.particles[k];
     PairConductance& g = result.particles[k] = {i, j, 0, 0};

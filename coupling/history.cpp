@@ -17,7 +17,8 @@ namespace {
 
 std::string header() {
   std::string line;
-  for (const auto& column : history_columns()) line += (line.empty() ? "" : ",") + std::string(column.name);
+  for (const auto& column : history_columns())
+    line += fmt::format("{}{}", line.empty() ? "" : ",", column.name);
   return line + "\n";
 }
 

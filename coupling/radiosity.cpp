@@ -44,10 +44,13 @@ struct ExchangeOperator : Eigen::EigenBase<ExchangeOperator> {
 
 namespace {
 
+/// Surfaces from which on threads pay.
+constexpr Eigen::Index many = 500;
+
 Vector multiply(const ExchangeAreas& areas, const Vector& x) {
   const auto& row = areas.pattern.row_begin;
   Vector y(x.size());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (x.size() >= many)
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     double sum = 0;
     for (auto k = row[i]; k < row[i + 1]; ++k) sum += areas.value[k] * x[areas.pattern.column[k]];
@@ -136,7 +139,7 @@ void collect_heats(const ExchangeAreas& areas, const Vector& radiosity, Radiosit
   const Eigen::Index count = radiosity.size();
   result.heat_W.assign(count, 0);
   if (!areas.variance.empty()) result.standard_error_W.assign(count, 0);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (count >= many)
   for (Eigen::Index i = 0; i < count; ++i) {
     double heat = 0, variance = 0;
     for (auto k = row[i]; k < row[i + 1]; ++k) {

@@ -34,6 +34,7 @@ ExchangeAreas restricted(const ExchangeAreas& all, const std::vector<std::int32_
     }
     part.pattern.row_begin.push_back(static_cast<std::int64_t>(part.pattern.column.size()));
     part.area_m2.push_back(all.area_m2[s]);
+    if (!all.rays_per_m2.empty()) part.rays_per_m2.push_back(all.rays_per_m2[s]);
   }
   return part;
 }
@@ -65,21 +66,20 @@ double crossing_variance(const ExchangeAreas& areas, const std::vector<double>& 
 
 }  // namespace
 
-void RadiositySource::prepare(const Enclosure& enclosure, const std::vector<WallRole>& role,
-                              std::uint64_t update) {
+void RadiositySource::prepare(const Enclosure& enclosure, const std::vector<WallRole>& role) {
   auto kept = surfaces_kept(role);
   if (prepared_ && kept == kept_ && same_geometry(enclosure, enclosure_)) return;
   prepared_ = false;
   report_ = {};
-  areas_ = close(restricted(estimate_(enclosure, update), kept), closure_, report_);
+  areas_ = close(restricted(estimate_(enclosure, geometry_key(enclosure)), kept), closure_, report_);
   kept_ = std::move(kept);
   enclosure_ = enclosure;
   prepared_ = true;
 }
 
 RadiativeHeat RadiositySource::net_heat(const Enclosure& enclosure, const RadiativeState& state,
-                                        std::uint64_t update) {
-  prepare(enclosure, state.role, update);
+                                        std::uint64_t /*update*/) {
+  prepare(enclosure, state.role);
   std::vector<double> power, emissivity;
   std::vector<char> gives;
   for (const auto s : kept_) {

@@ -11,13 +11,14 @@ namespace granrad {
 /// Exchange source by view factors and one radiosity per surface: estimate -> close -> solve.
 /// Isothermal surfaces radiate with their emissivity, adiabatic walls with emissivity 0 and one radiosity per
 /// wall, open walls and the surroundings are black at their temperature, excluded walls are dropped before
-/// closure. While the enclosure does not change (a frozen bed) the exchange areas are estimated once.
-/// One radiosity per surface is biased in dense grey beds (+14 % wall heat at phi = 0.43, emissivity 0.4);
-/// PathSource is not.
+/// closure. While the enclosure does not change (a frozen bed) the exchange areas are estimated once. Their
+/// random numbers are chosen by the geometry and not by the update, so that a resumed run finds the same
+/// areas. One radiosity per surface is biased in dense grey beds (+14 % wall heat at phi = 0.43, emissivity
+/// 0.4); PathSource is not.
 class RadiositySource : public ExchangeSource {
  public:
-  /// Exchange areas of an enclosure, one-way or symmetric, before closure; `update` selects random numbers.
-  using Estimate = std::function<ExchangeAreas(const Enclosure&, std::uint64_t update)>;
+  /// Exchange areas of an enclosure, one-way or symmetric, before closure; `key` selects random numbers.
+  using Estimate = std::function<ExchangeAreas(const Enclosure&, std::uint64_t key)>;
 
   RadiositySource(Estimate estimate, Closure closure) : estimate_(std::move(estimate)), closure_(closure) {}
   RadiativeHeat net_heat(const Enclosure& enclosure, const RadiativeState& state,
@@ -29,7 +30,7 @@ class RadiositySource : public ExchangeSource {
   int iterations() const { return iterations_; }
 
  private:
-  void prepare(const Enclosure& enclosure, const std::vector<WallRole>& role, std::uint64_t update);
+  void prepare(const Enclosure& enclosure, const std::vector<WallRole>& role);
 
   Estimate estimate_;
   Closure closure_;

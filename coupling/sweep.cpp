@@ -59,7 +59,7 @@ std::vector<SweepCase> combinations(const std::vector<Variation>& variations) {
     for (const auto& shorter : cases)
       for (const auto& value : variation.values) {
         SweepCase next = shorter;
-        next.name += (next.name.empty() ? "" : "_") + short_name(variation.key, value);
+        next.name += fmt::format("{}{}", next.name.empty() ? "" : "_", short_name(variation.key, value));
         next.overrides.push_back(variation.key + "=" + value);
         longer.push_back(next);
       }
@@ -71,7 +71,7 @@ std::vector<SweepCase> combinations(const std::vector<Variation>& variations) {
 std::string quoted(const std::string& text) {
   std::string inside;
   for (char c : text) inside += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return "'" + inside + "'";
+  return fmt::format("'{}'", inside);
 }
 
 void write_jobs(const Sweep& sweep, const fs::path& folder) {
@@ -79,7 +79,7 @@ void write_jobs(const Sweep& sweep, const fs::path& folder) {
   for (const auto& one : sweep.cases) {
     text += fmt::format("granrun run {} -o {} --resume", quoted(fs::absolute(sweep.scene).string()),
                         quoted(fs::absolute(folder / one.name).string()));
-    for (const auto& override_text : one.overrides) text += " --set " + quoted(override_text);
+    for (const auto& override_text : one.overrides) text += fmt::format(" --set {}", quoted(override_text));
     text += "\n";
   }
   write_text_file(folder / "jobs.txt", text);
@@ -93,7 +93,7 @@ void write_summary(const Sweep& sweep, const fs::path& folder) {
     const bool finished = is_finished(folder / one.name);
     std::string overrides;
     for (const auto& override_text : one.overrides)
-      overrides += (overrides.empty() ? "" : " ") + override_text;
+      overrides += fmt::format("{}{}", overrides.empty() ? "" : " ", override_text);
     text += fmt::format("{},\"{}\",{}", one.name, overrides, finished ? 1 : 0);
     const Results results = finished ? summarise(read_history(folder / one.name / "history.csv")) : Results{};
     for (const auto& column : history_columns()) text += fmt::format(",{:.9g}", results.mean(column.name));

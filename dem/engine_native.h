@@ -6,9 +6,16 @@
 
 namespace granrad {
 
-/// The native engine: leapfrog (velocity Verlet) with rotation, Hertz-Mindlin with history, SIMD kernels for
-/// AVX-512, AVX2 and the baseline from one source (chosen at run time), OpenMP, order-free fixed-point sums.
-/// threads 0: OpenMP's default; results do not depend on it, nor on the instruction set.
+/// The native engine: Hertz-Mindlin with history (dem/hertz_mindlin.h) and leapfrog with rotation, SIMD
+/// kernels for AVX-512, AVX2 and the baseline from one source (chosen at run time; GRANRAD_SIMD=avx512 | avx2 |
+/// baseline forces one), OpenMP, order-free fixed-point sums.
+///
+/// The leapfrog is written drift - kick - drift: x moves half a step, forces follow from there and from the
+/// velocity at the step's start, v moves a whole step, x the other half. This is the map of velocity Verlet seen half a step
+/// later, and a Bed (position, velocity and springs at one instant) is all it needs to go on: cutting a run
+/// into pieces changes no bit. Neither do threads, list schedules and instruction sets.
+///
+/// threads 0: OpenMP's default. bed.time_s = bed.step x step_s after each advance.
 std::unique_ptr<Engine> make_native_engine(const Bed& bed, const Vec3& gravity_m_s2, double step_s, int threads = 0);
 
 }  // namespace granrad

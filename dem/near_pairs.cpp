@@ -53,7 +53,8 @@ std::vector<SizeClass> size_classes(const Bed& bed, const std::vector<Vec3>& poi
 class ParticleSearch {
  public:
   ParticleSearch(const Bed& bed, const std::vector<Vec3>& points, const std::vector<SizeClass>& classes, double gap)
-      : bed_(bed), points_(points), classes_(classes), gap_(gap), class_of_(bed.size()) {
+      : bed_(bed), points_(points), classes_(classes), gap_(gap), class_of_(bed.size()),
+        periodic_(bed.periodic[0] || bed.periodic[1] || bed.periodic[2]) {
     for (std::size_t c = 0; c < classes.size(); ++c)
       for (const auto i : classes[c].grid.members()) class_of_[i] = static_cast<std::int32_t>(c);
   }
@@ -61,15 +62,20 @@ class ParticleSearch {
   /// Appends the pairs particle i finds: later ones of its own size class, all of larger classes.
   void find(std::int32_t i, std::vector<NearPair>& found) const {
     const std::int32_t own = class_of_[i];
-    for (std::int32_t c = 0; c <= own; ++c)
-      classes_[c].grid.visit_around(points_[i], [&](std::int32_t j, const Vec3& at) {
+    const Vec3 here = points_[i];
+    const double own_reach = bed_.radius_m[i] + gap_;
+    for (std::int32_t c = 0; c <= own; ++c) {
+      const double most = std::max(own_reach + classes_[c].largest_radius_m, 0.0), most_squared = most * most;
+      classes_[c].grid.visit_around(here, [&](std::int32_t j, const Vec3& at) {
         if (c == own && j <= i) return;
-        const double reach = bed_.radius_m[i] + bed_.radius_m[j] + gap_;
-        const Vec3 apart = nearest_image(bed_, at - points_[i]);
+        const Vec3 apart = periodic_ ? nearest_image(bed_, at - here) : at - here;
         const double squared = dot(apart, apart);
+        if (squared > most_squared) return;
+        const double reach = own_reach + bed_.radius_m[j];
         if (reach >= 0 && squared <= reach * reach)
           found.push_back({std::min(i, j), std::max(i, j), std::sqrt(squared)});
       });
+    }
   }
 
  private:
@@ -78,6 +84,7 @@ class ParticleSearch {
   const std::vector<SizeClass>& classes_;
   double gap_;
   std::vector<std::int32_t> class_of_;
+  bool periodic_;
 };
 
 /// Sorts by (i, j): counting by i, then each row. The result does not depend on the order found.

@@ -120,8 +120,12 @@ void PlugFeed::reshuffle() {
     return std::abs(std::remainder(p.z - end, period)) > held;
   };
   const std::vector<double> radii(column_.size(), radius_);
+  // Long moves across, short ones along: the number of spheres in a channel's height of tape stays what it is.
   const double gap = 2 * radius_ * std::max(0.01, std::cbrt(0.6 / settings_.solid_fraction) - 1);
-  shake_spheres(tape_, radii, column_, gap, reshuffle_sweeps, settings_.seed,
+  const double along = std::min(gap, 0.2 * radius_);
+  const Vec3 half = tape_.box.size() * 0.5;
+  const MoveLength length{{std::min(gap, half.x), std::min(gap, half.y), along}, {half.x, half.y, along}};
+  shake_spheres(tape_, radii, column_, length, reshuffle_sweeps, settings_.seed,
                 reshuffle_stream + half_periods_, away_from_end);
 }
 

@@ -69,15 +69,19 @@ CheckedCurve Checker::wall_curve(const CorrelationRow& row) const {
 }
 
 void Checker::check_upper(const CorrelationRow& row, const CheckedCurve& curve) {
-  const double allowed = fit_overshoot * curve.bound(curve.contact);
   double worst = 0, at = 0;
   for (double d = curve.contact; d < curve.cutoff; d += step)
     if (const double over = curve.raw(d) - curve.bound(d); over > worst) worst = over, at = d;
-  if (worst > allowed)
-    problem(
-        fmt::format("solid fraction {}: {}({} = {:.2f}) = {:.4g} (the bound is {:.4g}: more than nothing in "
-                    "between would let through) held at the bound in use; refit this row",
-                    row.solid_fraction, curve.name, curve.distance, at, curve.raw(at), curve.bound(at)));
+  const double part = worst / curve.bound(curve.contact);
+  if (part < overshoot_noted) return;
+  const auto text = fmt::format(
+      "solid fraction {}: {}({} = {:.2f}) = {:.4g} (with nothing in between it would be {:.4g}; held "
+      "there in use)",
+      row.solid_fraction, curve.name, curve.distance, at, curve.raw(at), curve.bound(at));
+  if (part > overshoot_allowed)
+    problem(text + " refit this row");
+  else
+    note(text);
 }
 
 void Checker::check_lower(const CorrelationRow& row, const CheckedCurve& curve) {

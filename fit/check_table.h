@@ -13,8 +13,9 @@ struct CheckFinding {
 };
 
 /// Looks at a valid table as physics:
-///  - upper bounds: F_pp <= exact two-sphere factor, F_pw <= 1/2, with 1 % of the contact value for the fit:
-///  problem
+///  - upper bounds: F_pp <= exact two-sphere factor, F_pw <= 1/2: beyond by more than 10 % of the contact
+///  value:
+///    problem; by more than 1 % (a least-squares cubic does): note
 ///  - lower bound: where the raw curve is negative, or never positive: note, or problem when that is at
 ///  contact
 ///  - monotone: a held value that grows with distance by more than 5 % of the contact value: problem; less:

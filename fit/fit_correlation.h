@@ -20,7 +20,7 @@ struct DistanceBin {
   std::size_t count = 0;
   double mean = 0;        ///< of F
   double fitted = 0;      ///< mean of the curve over the same samples
-  double scatter = 0;     ///< standard deviation of F about the curve's shape, ray noise removed
+  double scatter2 = 0;    ///< variance of F about the curve's shape less that of the rays (may be negative)
   double mean_error = 0;  ///< standard error of `mean`
 };
 

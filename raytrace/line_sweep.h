@@ -30,9 +30,10 @@ struct LineOptions {
   int replicates = 4;  ///< independent randomisations, >= 2: the only honest error of low-discrepancy sets
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0: OpenMP's default; results do not depend on it
-  double target_error =
-      0;  ///< > 0: `directions` grows until the rms standard error of the particle-wall row
-          ///< sums (counts, areas) or of the particle heats falls below it, relative to their rms
+  /// > 0: `directions` grows until the standard error of the particles' sums over walls and surroundings, rms
+  /// over the particles relative to their mean (counts, areas), or that of the particle heats, rms relative
+  /// to the rms heat, falls below it.
+  double target_error = 0;
   std::size_t memory_limit_bytes = std::size_t{4} << 30;  ///< of the counts; see LineReport::thinning_unit
 };
 

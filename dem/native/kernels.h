@@ -47,9 +47,9 @@ struct StepConstants {
 
 /// What moving the particles needs. kick rows {dt/m x3, 0, dt/I x3, 0} divided by the fixed-point scales.
 struct MoveConstants {
-  const double* kick;
+  const double* kick;        ///< aligned like the rows
   std::int64_t kick_stride;   ///< 0: one row for all, 8: one each
-  double gravity_kick[8];     ///< {g dt, 0 ...}
+  alignas(64) double gravity_kick[8];    ///< {g dt, 0 ...}
   double mean_velocity[4];    ///< speed limits are relative to it
   double half_step_s;
 };

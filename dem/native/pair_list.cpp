@@ -95,10 +95,10 @@ ContactView PairList::view() {
           varied_used_ ? varied_.data() : nullptr, padded_};
 }
 
-void PairList::collect(const Rows& rows, std::vector<Memory>& memories) const {
+void PairList::collect(const Rows& rows, bool twins, std::vector<Memory>& memories) const {
   for (std::int64_t k = 0; k < tight_count_; ++k) {
     const double x = displacement_[0][k], y = displacement_[1][k], z = displacement_[2][k];
-    if (is_zero(x, y, z) || first_[k] > second_[k]) continue;
+    if (is_zero(x, y, z) || (twins && first_[k] > second_[k])) continue;
     const auto a = rows.bed_index[first_[k]], b = rows.bed_index[second_[k]];
     if (a < b)
       memories.push_back({a, b, {x, y, z}});

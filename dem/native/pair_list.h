@@ -30,7 +30,7 @@ class MemoryTable {
 /// these are visited each step, and they carry the springs.
 class PairList {
  public:
-  void clear_near() { near_i_.clear(), near_j_.clear(), fresh_ = true; }
+  void clear_near() { near_i_.clear(), near_j_.clear(); }
   void add_near(std::int32_t i, std::int32_t j) { near_i_.push_back(i), near_j_.push_back(j); }
   /// Appends the partners found[0, count) of row i; returns where to write the next ones.
   void add_near(std::int32_t i, const std::int32_t* found, std::int64_t count);
@@ -44,8 +44,9 @@ class PairList {
   void fill_coefficients(const Rows& rows, const std::vector<Material>& materials);
   ContactView view();
 
-  /// Appends every spring that is not zero; pairs with first row > second row (another thread's twin) are left out.
-  void collect(const Rows& rows, std::vector<Memory>& memories) const;
+  /// Appends every spring that is not zero. Of pairs that two threads keep (`twins`), only the one with the
+  /// lower row first.
+  void collect(const Rows& rows, bool twins, std::vector<Memory>& memories) const;
 
   std::int64_t near_count() const { return near_count_; }
   std::int64_t tight_count() const { return tight_count_; }

@@ -89,10 +89,11 @@ void WallContacts::add_plane(std::int32_t row, std::int32_t facet, std::int64_t 
   for (int a = 0; a < 3; ++a) displacement_[a].push_back(s[a]);
 }
 
-void WallContacts::finish_planes(const Rows& rows, const std::vector<Material>& materials, std::int32_t idle_row) {
+void WallContacts::finish_planes(const Rows& rows, const std::vector<Material>& materials, std::int32_t idle_row,
+                                 std::int32_t idle_plane) {
   plane_count_ = static_cast<std::int64_t>(rows_.size());
   while (rows_.size() % 8) {
-    rows_.push_back(idle_row), facets_.push_back(facets_[0]), features_.push_back(-1);
+    rows_.push_back(idle_row), facets_.push_back(idle_plane), features_.push_back(-1);
     for (auto& column : displacement_) column.push_back(0);
   }
   const auto padded = rows_.size();
@@ -137,7 +138,7 @@ void WallContacts::refresh(const WallSurface& surface, const Rows& rows, const s
       if (m.row == row) border.springs.push_back({m.feature, m.displacement});
     borders_.push_back(std::move(border));
   }
-  finish_planes(rows, materials, idle_row);
+  finish_planes(rows, materials, idle_row, surface.facet_count());
 }
 
 double WallContacts::add_forces(const Kernels& kernels, const WallSurface& surface, Rows& rows,

@@ -57,7 +57,8 @@ class WallContacts {
   bool acts_as_planes(const WallSurface& surface, const Vec3& p, double margin_m,
                       const std::vector<std::int32_t>& facets) const;
   void add_plane(std::int32_t row, std::int32_t facet, std::int64_t feature, std::vector<WallMemory>& kept);
-  void finish_planes(const Rows& rows, const std::vector<Material>& materials, std::int32_t idle_row);
+  void finish_planes(const Rows& rows, const std::vector<Material>& materials, std::int32_t idle_row,
+                     std::int32_t idle_plane);
   double border_forces(const WallSurface& surface, Rows& rows, const StepConstants& constants,
                        const std::vector<Material>& materials, Border& border);
 

@@ -145,6 +145,8 @@ void WallSurface::fill_rows(const std::vector<Wall>& walls) {
     const Vec3& v = walls[f.wall].velocity_m_s;
     for (const double x : {v.x, v.y, v.z, 0.0}) velocity_rows_.push_back(x);
   }
+  for (const double x : {1e9, 1e9, 1e9, 0.0, 1.0, 0.0, 0.0, 0.0}) plane_rows_.push_back(x);
+  velocity_rows_.insert(velocity_rows_.end(), 4, 0.0);
 }
 
 void WallSurface::set_time(const std::vector<Wall>& walls, double time_s) {
@@ -224,7 +226,7 @@ void WallSurface::touches(std::int32_t f, const Vec3& p, double reach_m, std::ve
   if (!facet.stands || std::abs(h) >= reach_m) return;
   const auto face = [&] {
     const Facet& plane = facets_[facet.group];
-    const Vec3 normal = h < 0 ? Vec3{} - plane.normal : plane.normal;
+    const Vec3 normal = h < 0 ? plane.normal * -1.0 : plane.normal;
     out.push_back({facet.group, f, 0, p - plane.normal * h, normal, std::abs(h)});
   };
   if (foot_inside(f, p)) return face();

@@ -60,7 +60,7 @@ class WallSurface {
   /// Whether two features meet (a group and its edge, an edge and its end), or are groups that share an edge.
   bool adjacent(std::int64_t a, std::int64_t b) const;
 
-  /// Planes by facet, as the kernels read them (rows of the facet's group).
+  /// Planes by facet, as the kernels read them (rows of the facet's group); one more that nobody touches pads lists.
   const double* plane_rows() const { return plane_rows_.data(); }
   const double* velocity_rows() const { return velocity_rows_.data(); }
   Vec3 velocity(std::int32_t f) const {

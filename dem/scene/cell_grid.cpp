@@ -6,6 +6,7 @@ namespace granrad {
 
 namespace {
 constexpr double most_cells = 1 << 20;  ///< along one direction
+constexpr std::uint64_t buckets_per_point = 16;
 /// Cells are larger than asked by this part, so that round-off of cell coordinates (most_cells * 2^-52) never
 /// puts two points within `cell_m` two cells apart.
 constexpr double cell_margin = 1 + 1e-9;
@@ -31,7 +32,9 @@ CellGrid::CellGrid(const std::vector<Vec3>& points, std::vector<std::int32_t> me
     inverse_size_[axis] = count / (periodic[axis] ? length : std::max(length, cell_m * cell_margin));
     cells *= static_cast<std::uint64_t>(count_[axis]);
   }
-  bucket_begin_.assign(std::min<std::uint64_t>(cells, 4 * members.size() + 64) + 1, 0);
+  const std::uint64_t most_buckets = buckets_per_point * members.size() + 64;
+  own_buckets_ = cells <= most_buckets;
+  bucket_begin_.assign(std::min(cells, most_buckets) + 1, 0);
 
   std::vector<std::size_t> bucket(members.size());
   for (std::size_t k = 0; k < members.size(); ++k) {

@@ -9,7 +9,7 @@
 namespace granrad {
 
 /// Points sorted into cubic cells of at least `cell_m`, for "who is near". Memory is O(points) whatever the extent:
-/// cells beyond a few per point share a bucket, told apart by their coordinates. Along periodic directions of
+/// cells beyond some per point share a bucket, told apart by their coordinates. Along periodic directions of
 /// `box` the cells wrap and tile the period; points must lie inside it there.
 class CellGrid {
  public:
@@ -32,14 +32,17 @@ class CellGrid {
   using Cell = std::array<std::int64_t, 3>;
   Cell cell_of(const Vec3& p) const;
   std::size_t bucket_of(const Cell& c) const {
-    return static_cast<std::uint64_t>((c[2] * count_[1] + c[1]) * count_[0] + c[0]) % (bucket_begin_.size() - 1);
+    const std::uint64_t cell = (c[2] * count_[1] + c[1]) * count_[0] + c[0];
+    return own_buckets_ ? cell : cell % (bucket_begin_.size() - 1);
   }
+  /// Visits the cells x_first .. x_last of a row; neighbours in x are neighbours in memory.
   template <class Visit>
-  void visit_cell(const Cell& cell, Visit&& visit) const;
+  void visit_row(std::int64_t x_first, std::int64_t x_last, std::int64_t y, std::int64_t z, Visit&& visit) const;
 
   Vec3 origin_, inverse_size_;
   Cell count_;
   std::array<bool, 3> periodic_;
+  bool own_buckets_;                        ///< every cell has a bucket of its own
   std::vector<std::int32_t> member_;        ///< by bucket
   std::vector<Vec3> point_;                 ///< by bucket
   std::vector<Cell> cell_;                  ///< by bucket
@@ -47,10 +50,18 @@ class CellGrid {
 };
 
 template <class Visit>
-void CellGrid::visit_cell(const Cell& cell, Visit&& visit) const {
-  const std::size_t bucket = bucket_of(cell);
-  for (std::int32_t k = bucket_begin_[bucket]; k < bucket_begin_[bucket + 1]; ++k)
-    if (cell_[k] == cell) visit(member_[k], point_[k]);
+void CellGrid::visit_row(std::int64_t x_first, std::int64_t x_last, std::int64_t y, std::int64_t z,
+                         Visit&& visit) const {
+  if (own_buckets_) {
+    const std::int32_t end = bucket_begin_[bucket_of({x_last, y, z}) + 1];
+    for (std::int32_t k = bucket_begin_[bucket_of({x_first, y, z})]; k < end; ++k) visit(member_[k], point_[k]);
+    return;
+  }
+  for (Cell cell{x_first, y, z}; cell[0] <= x_last; ++cell[0]) {
+    const std::size_t bucket = bucket_of(cell);
+    for (std::int32_t k = bucket_begin_[bucket]; k < bucket_begin_[bucket + 1]; ++k)
+      if (cell_[k] == cell) visit(member_[k], point_[k]);
+  }
 }
 
 template <class Visit>
@@ -71,7 +82,11 @@ void CellGrid::visit_around(const Vec3& p, Visit&& visit) const {
     }
   for (int k = 0; k < n[2]; ++k)
     for (int j = 0; j < n[1]; ++j)
-      for (int i = 0; i < n[0]; ++i) visit_cell({along[0][i], along[1][j], along[2][k]}, visit);
+      for (int i = 0; i < n[0]; ++i) {
+        const int first = i;
+        while (i + 1 < n[0] && along[0][i + 1] == along[0][i] + 1) ++i;
+        visit_row(along[0][first], along[0][i], along[1][j], along[2][k], visit);
+      }
 }
 
 template <class Visit>
@@ -89,8 +104,7 @@ void CellGrid::visit_box(const Box& range, Visit&& visit) const {
   }
   for (auto z = std::max<std::int64_t>(low[2], 0); z <= std::min(high[2], count_[2] - 1); ++z)
     for (auto y = std::max<std::int64_t>(low[1], 0); y <= std::min(high[1], count_[1] - 1); ++y)
-      for (auto x = std::max<std::int64_t>(low[0], 0); x <= std::min(high[0], count_[0] - 1); ++x)
-        visit_cell({x, y, z}, visit);
+      visit_row(std::max<std::int64_t>(low[0], 0), std::min(high[0], count_[0] - 1), y, z, visit);
 }
 
 }  // namespace granrad

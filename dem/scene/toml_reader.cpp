@@ -335,6 +335,7 @@ void TomlDocument::State::report_unread(const toml::table& table, const std::str
       if (!troubled.count(here)) report_unknown(key, node, path);
       continue;
     }
+    if (troubled.count(here) && read[here].empty()) continue;  // nobody could read it
     if (const auto* child = node.as_table()) report_unread(*child, here);
     if (const auto* array = node.as_array())
       for (std::size_t k = 0; k < array->size(); ++k)

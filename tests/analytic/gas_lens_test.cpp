@@ -72,9 +72,10 @@ TEST(GasLens, OfAnyRadiiEqualsThePairForEqualRadii) {
 double lens_by_quadrature(double a, double b, double distance, double s, double ratio) {
   const auto disc = [](double p, double q, double d) {  // radius of the circle two spheres share
     const double x = (d * d + p * p - q * q) / (2 * d);
-    return x < 0 ? p : x > p ? 0 : std::sqrt(p * p - x * x);
+    return x < 0 ? p : x >= p ? 0.0 : std::sqrt(p * p - x * x);
   };
   const double outer = std::min(disc(b, ratio * a, distance), disc(a, ratio * b, distance));
+  if (outer <= 0) return 0;
   const double inner = distance < a + b ? disc(a, b, distance) : 0;
   const double flat = distance - s < a + b ? std::min(outer, disc(a, b, distance - s)) : 0;
   const auto integrand = [&](double r) {
@@ -84,9 +85,9 @@ double lens_by_quadrature(double a, double b, double distance, double s, double 
   using boost::math::quadrature::gauss_kronrod;
   const double start = std::max(inner, flat);
   const double split = std::min(outer, std::max(3 * start, 0.05 * outer));
-  return gauss_kronrod<double, 61>::integrate(integrand, inner, start, 15, 1e-13) +
-         gauss_kronrod<double, 61>::integrate(integrand, start, split, 15, 1e-13) +
-         gauss_kronrod<double, 61>::integrate(integrand, split, outer, 15, 1e-13);
+  return gauss_kronrod<double, 61>::integrate(integrand, inner, start, 12, 1e-10) +
+         gauss_kronrod<double, 61>::integrate(integrand, start, split, 12, 1e-10) +
+         gauss_kronrod<double, 61>::integrate(integrand, split, outer, 12, 1e-10);
 }
 
 TEST(GasLens, OfUnequalRadiiIsTheIntegralOverTheCommonDisc) {
@@ -95,8 +96,8 @@ TEST(GasLens, OfUnequalRadiiIsTheIntegralOverTheCommonDisc) {
     for (double gap : {-1e-6, -1e-8, 0.0, 1e-8, 2e-7, 5e-6}) {
       const double distance = 4e-4 + small + gap;
       const double exact = lens_by_quadrature(4e-4, small, distance, s, 1.2);
-      EXPECT_NEAR(lens_m(4e-4, small, distance, s, 1.2) / exact, 1, 1e-7) << small << " gap " << gap;
-      EXPECT_NEAR(lens_m(small, 4e-4, distance, s, 1.2) / exact, 1, 1e-7) << small << " gap " << gap;
+      EXPECT_NEAR(lens_m(4e-4, small, distance, s, 1.2), exact, 1e-8 * exact) << small << " gap " << gap;
+      EXPECT_NEAR(lens_m(small, 4e-4, distance, s, 1.2), exact, 1e-8 * exact) << small << " gap " << gap;
     }
 }
 
@@ -104,7 +105,7 @@ TEST(GasLens, AgainstAHugeSphereTendsToTheWall) {
   const double r = 4e-4, huge = 0.4, s = 2.75e-8;  // relative curvature 1e-3
   for (double overlap : {-0.1, -1e-3, 1e-3})
     EXPECT_NEAR(lens_m(r, huge, huge + r * (1 - overlap), s, 1.2) / (r * wall_lens(overlap, s / r, 1.2)), 1,
-                1e-5);
+                2e-3);
 }
 
 TEST(GasLens, IsFiniteAndFallsWithDistanceAcrossAllBranches) {

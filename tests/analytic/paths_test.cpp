@@ -180,18 +180,19 @@ TEST(PathsReference, OfTheCubeWithOneRadiosityPerWallIsTheClosedForm) {
   EXPECT_NEAR(reradiating_cube(1), 18224.6836, 1e-3);
 }
 
-// Re-radiation at every point of the side walls: 0.9 % less than the closed form's one radiosity per wall.
+// Re-radiation at every point of the side walls, and emission and reflection at every point of the grey ones: 7 %
+// less than the closed form, whose one radiosity per wall is exact only for patches that see all alike.
 TEST_P(GreyPaths, ReradiatingCube) {
-  const double coarse = reradiating_cube(5), fine = reradiating_cube(10);
+  static const double coarse = reradiating_cube(8), fine = reradiating_cube(16);
   const double exact = fine + (fine - coarse) / 3;  // second order in the patch
-  EXPECT_NEAR(coarse / fine, 1, 1e-3);
+  EXPECT_NEAR(coarse / fine, 1, 2e-3);
+  EXPECT_NEAR(exact / 18224.6836, 0.935, 0.001);
   Case c;
   c.add_box({{0, 0, 0}, {1, 1, 1}}, WallRole::adiabatic, 300, 1);
   c.wall(4).role = c.wall(5).role = WallRole::isothermal;
   c.wall(4).temperature_K = 500, c.wall(4).emissivity = 0.5;
   c.wall(5).temperature_K = 1000, c.wall(5).emissivity = 0.8;
   const auto heat = c.trace(options_for(GetParam(), 300000));
-  RecordProperty("exact_W", std::to_string(exact));
   expect_heat(heat, 4, exact, 0.003);
   for (int w = 0; w < 4; ++w) EXPECT_EQ(heat.heat_W[w], 0);
 }

@@ -180,8 +180,8 @@ TEST(Radiosity, LeavesSurfacesThatSeeOnlyReradiatorsAlone) {
 }
 
 TEST(Radiosity, GivesTheSameBitsForAnyNumberOfThreads) {
-  const auto X = exchange_areas(random_enclosure(200));
-  const auto g = random_surfaces(200, 0.1, 0.9);
+  const auto X = exchange_areas(random_enclosure(600));
+  const auto g = random_surfaces(600, 0.1, 0.9);
   const int threads = omp_get_max_threads();
   omp_set_num_threads(1);
   const auto one = solve_radiosity(X, g.power, g.emissivity);

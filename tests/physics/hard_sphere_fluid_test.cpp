@@ -2,7 +2,7 @@
 // spheres: view factors depend on the structure. Truth: the contact value of the pair distribution,
 // Carnahan-Starling g(d) = (1 - phi/2) / (1 - phi)^3 (exact to 0.3 % below phi = 0.49).
 // Blind to: structure beyond the first shell. Planted error seen to fail: no equilibration sweeps (g(d) = 0.2
-// at phi = 0.48 instead of 5.4), and 20 sweeps.
+// at phi = 0.48 instead of 5.4). Twenty sweeps already pass.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -26,7 +26,7 @@ TEST(PlugFeed, SolidFractionAndMassFlowOfAStraightPlug) {
     Bed bed = empty_bed(scene);
     feed.start(bed);
     EXPECT_NEAR(solid_fraction(bed, scene.box), phi, 0.01 * phi);
-    const double speed = 1.59e-3 / (3984 * phi * 4e-5), end = 1.5 * 0.050 / speed;
+    const double speed = 1.59e-3 / (3984 * phi * 4e-5), end = 2 * 0.050 / speed;
     double sum = 0, worst = 0;
     int samples = 0;
     while (bed.time_s < end) {
@@ -82,15 +82,18 @@ TEST(PlugFeed, TapeStaysFreeOfOverlapAndChanges) {
   feed.start(bed);
   std::vector<Vec3> before = bed.position_m;
   const double speed = 1.59e-3 / (3984 * 0.48 * 4e-5);
+  int updates = 0;
   while (bed.time_s * speed < 0.05) {
     fly(bed, update_s);
     feed.update(bed);
-    ASSERT_GE(closest_pair(bed), 1 - 1e-9);
+    if (++updates % 8 == 0) {
+      ASSERT_GE(closest_pair(bed), 1 - 1e-9);
+    }
   }
   EXPECT_EQ(feed.totals().nudged, 0);
   const double count = feed.totals().inserted,
                wanted = 0.48 * 4e-5 * speed * bed.time_s / sphere_volume(0.4e-3);
-  EXPECT_NEAR(count, wanted, 0.01 * wanted);
+  EXPECT_NEAR(count, wanted, 0.005 * wanted);
   // A sphere of the later filling stands where none stood at the start, up to the tape's shift.
   int at_old_place = 0;
   for (const Vec3& p : bed.position_m)

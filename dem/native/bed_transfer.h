@@ -1,0 +1,33 @@
+#pragma once
+#include <vector>
+
+#include "dem/native/rows.h"
+#include "dem/scene/bed.h"
+
+namespace granrad::native {
+
+/// Moves the state between the Bed and the rows, and knows what the Bed looked like when the engine left it:
+/// an untouched Bed keeps its lists.
+class BedTransfer {
+ public:
+  enum class Change { none, moved, memory, particles };
+  /// Loads the Bed; positions are drifted half a step, to where forces are evaluated. Says what differs from
+  /// the Bed stored last (the strongest of the changes). Throws InputError for a Bed that makes no sense.
+  Change load(const Bed& bed, Rows& rows, double half_step_s, int threads);
+  /// The memories of the Bed by index, after a load that reported `memory` or `particles`.
+  static std::vector<Memory> memories(const Bed& bed);
+  /// Writes positions, velocities and memories back. Throws NumericalError for a value that is not a number.
+  void store(const Rows& rows, std::vector<Memory> memories, Bed& bed);
+  const std::vector<Material>& materials() const { return materials_; }
+
+ private:
+  bool same_particles(const Bed& bed) const;
+  void lay_out(const Bed& bed, Rows& rows, int threads);
+  std::vector<std::int64_t> id_;
+  std::vector<double> radius_;
+  std::vector<std::int32_t> material_;
+  std::vector<Material> materials_;
+  std::vector<ContactMemory> contacts_;
+};
+
+}  // namespace granrad::native

@@ -1,0 +1,83 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "dem/native/grid.h"
+#include "dem/native/model.h"
+#include "dem/native/pair_list.h"
+#include "dem/native/wall_contacts.h"
+
+namespace granrad::native {
+
+/// One thread's part of the work: it owns a range of rows. Pairs inside the range are worked on once; a pair
+/// across two ranges is worked on by both owners, each adding the force to its own row. Both get the same
+/// bits, as the law is exactly antisymmetric.
+struct Share {
+  WallContacts::Range range{0, 0};
+  PairList own, cross;
+  WallContacts walls;
+  std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> outbox;  ///< [owner] twins of cross pairs
+  double deepest = -1;
+  bool too_fast = false;
+};
+
+/// How often lists are made anew; results do not depend on it.
+struct ListSchedule {
+  int refresh_every = 10;  ///< steps a tight list is made to live
+  int rebuild_every = 0;   ///< 0: near lists when someone has moved through the skin; else also every so many steps
+};
+
+/// Keeps the near and tight lists of all threads in step with the rows.
+class ContactLists {
+ public:
+  ContactLists(const Kernels& kernels, int threads, ListSchedule schedule);
+
+  /// Forgets the lists; springs come from `memories` when they are made again.
+  void restart(std::vector<Memory> memories);
+  /// Positions or velocities were changed from outside.
+  void touch() { life_ = 0; }
+  void walls_changed() { walls_stale_ = true, life_ = 0; }
+  /// Makes the lists good for at least one step; sets reaches and speed limits in the rows. Returns the steps
+  /// they are good for while no speed limit is broken. Throws NumericalError for a tunnelling particle.
+  std::int64_t prepare(Rows& rows, Model& model, const Periods& periods, const Bed& bed, const WallSurface& surface);
+  /// `steps` were done; `limit_broken`: the lists must be refreshed whatever was promised.
+  void spend(std::int64_t steps, bool limit_broken);
+
+  std::vector<Share>& shares() { return shares_; }
+  const std::vector<Share>& shares() const { return shares_; }
+  std::vector<Memory> collect(const Rows& rows) const;
+  /// Gap up to which the near list is complete for the positions now in the rows.
+  double complete_gap_m(const Rows& rows) const;
+  std::size_t bytes() const;
+  std::int64_t rebuilds = 0, refreshes = 0;  ///< for the bench
+
+ private:
+  struct Motion {
+    double fastest = 0;       ///< largest |v - mean| component, m/s
+    double travelled = 0;     ///< largest distance moved since the near list, beside the mean
+    double near_need = 0;     ///< largest distance moved + reach margin
+    double wall_need = 0;     ///< the same without the mean, since the wall list
+  };
+  double margin_of(double speed, std::int64_t steps) const;
+  Motion measure(const Rows& rows, std::int64_t steps) const;
+  void check_speeds(const Rows& rows, const Bed& bed) const;
+  void set_reaches(Rows& rows, std::int64_t steps);
+  void sort_rows(Rows& rows, const Periods& periods, const Bed& bed, double cell_m);
+  void find_near(const Rows& rows, const Model& model, const Periods& periods);
+  void find_walls(const Rows& rows, const WallSurface& surface);
+  Vec3 drift() const { return mean_velocity_ * (step_s_ * double(steps_since_sort_)); }
+
+  const Kernels& kernels_;
+  ListSchedule schedule_;
+  std::vector<Share> shares_;
+  Grid grid_;
+  MemoryTable memory_table_;
+  std::vector<Memory> memories_;
+  std::vector<double> near_origin_, wall_origin_;  ///< [3 n] where the rows were when the list was made
+  Vec3 mean_velocity_{};
+  double step_s_ = 0, half_skin_m_ = 0, spare_speed_m_s_ = 0;
+  std::int64_t life_ = 0, promised_ = 0, steps_since_sort_ = 0;
+  bool stale_ = true, walls_stale_ = true;
+};
+
+}  // namespace granrad::native

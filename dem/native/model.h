@@ -1,0 +1,26 @@
+#pragma once
+#include <array>
+
+#include "dem/native/kernels.h"
+#include "dem/native/rows.h"
+#include "dem/scene/bed.h"
+
+namespace granrad::native {
+
+/// Faster than this fraction of its radius per step in any direction, a particle tunnels: it would meet
+/// others deeper than the contact model holds.
+inline constexpr double fastest_step = 0.1;
+
+/// Everything the inner loops need beside the rows; fixed while particles and materials stay the same.
+struct Model {
+  StepConstants constants{};
+  MoveConstants move{};
+  alignas(64) std::array<double, 8> kick_row{};
+  double smallest_radius = 0, largest_radius = 0;
+};
+
+/// Also fills rows.kick where particles differ. The fixed-point scale leaves room for as many contacts as
+/// fit around the largest sphere, each at the deepest overlap and the highest speed allowed.
+Model make_model(const Bed& bed, Rows& rows, const Periods& periods, const Vec3& gravity_m_s2, double step_s);
+
+}  // namespace granrad::native

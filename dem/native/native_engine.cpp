@@ -1,0 +1,207 @@
+#include "dem/native/native_engine.h"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dem/engine_native.h"
+#include "dem/native/bed_transfer.h"
+#include "dem/native/model.h"
+#include "dem/scene/error.h"
+
+namespace granrad::native {
+namespace {
+
+bool same_walls(const std::vector<Wall>& a, const std::vector<Wall>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Wall& v, const Wall& w) {
+    return v.vertices == w.vertices && v.triangles == w.triangles && v.contact == w.contact &&
+           v.velocity_m_s == w.velocity_m_s && v.opens_at_s == w.opens_at_s;
+  });
+}
+
+/// Threads that find enough work to be worth their barriers.
+int useful_threads(int asked, std::int64_t particles) {
+  constexpr std::int64_t particles_each = 400;
+  const int most = asked > 0 ? asked : omp_get_max_threads();
+  return static_cast<int>(std::clamp<std::int64_t>(particles / particles_each, 1, most));
+}
+
+}  // namespace
+
+struct NativeEngine::Impl {
+  Vec3 gravity;
+  double step_s;
+  EngineOptions options;
+  const Kernels& kernels;
+  Rows rows;
+  BedTransfer transfer;
+  std::unique_ptr<ContactLists> lists;
+  std::unique_ptr<WallSurface> surface;
+  std::vector<Wall> walls;
+  std::unique_ptr<Periods> periods;
+  Box box{};
+  Model model;
+
+  Impl(const Vec3& g, double step, const EngineOptions& o)
+      : gravity(g), step_s(step), options(o), kernels(o.kernels ? *o.kernels : select_kernels()) {}
+
+  void load(const Bed& bed);
+  void load_walls(const Bed& bed);
+  std::int64_t run(std::int64_t steps, bool finishes, bool& limit_broken);
+  void check_overlaps(const Bed& bed);
+};
+
+void NativeEngine::Impl::load_walls(const Bed& bed) {
+  const bool known = surface && same_walls(bed.walls, walls);
+  if (!known) {
+    walls = bed.walls;
+    surface = std::make_unique<WallSurface>(walls);
+  }
+  surface->set_time(walls, bed.time_s);
+  if (!known && lists) lists->walls_changed();
+}
+
+void NativeEngine::Impl::load(const Bed& bed) {
+  const int threads = lists ? static_cast<int>(lists->shares().size()) : 0;
+  const int wanted = useful_threads(options.threads, static_cast<std::int64_t>(bed.size()));
+  const bool same_box = periods && bed.box.min == box.min && bed.box.max == box.max &&
+                        (periods->length[0] > 0) == bed.periodic[0] && (periods->length[1] > 0) == bed.periodic[1] &&
+                        (periods->length[2] > 0) == bed.periodic[2];
+  if (threads != wanted || !same_box) {
+    lists = std::make_unique<ContactLists>(kernels, wanted, options.schedule);
+    periods = std::make_unique<Periods>(bed);
+    box = bed.box;
+    rows.count = -1;
+  }
+  load_walls(bed);
+  const auto change = transfer.load(bed, rows, 0.5 * step_s, wanted);
+  if (change == BedTransfer::Change::particles) model = make_model(bed, rows, *periods, gravity, step_s);
+  if (change >= BedTransfer::Change::memory) lists->restart(BedTransfer::memories(bed));
+  if (change == BedTransfer::Change::moved) lists->touch();
+  model.move.kick = rows.uniform ? model.kick_row.data() : rows.kick.data();
+  model.move.kick_stride = rows.uniform ? 0 : 8;
+}
+
+/// Up to `steps` steps with the lists as they are; fewer if a speed limit is broken. When the last of them
+/// `finishes` the advance, positions stop at the end of the step instead of the middle of the next.
+std::int64_t NativeEngine::Impl::run(std::int64_t steps, bool finishes, bool& limit_broken) {
+  auto& shares = lists->shares();
+  std::int64_t done = 0;
+  limit_broken = false;
+  model.move.kick = rows.uniform ? model.kick_row.data() : rows.kick.data();
+#pragma omp parallel num_threads(static_cast<int>(shares.size()))
+  {
+    Share& share = shares[omp_get_thread_num()];
+    const RowView view = rows.view();
+    double deepest = -1;
+    bool stop = false;
+    for (std::int64_t k = 0; k < steps && !stop; ++k) {
+      deepest = std::max({deepest, kernels.pair_contacts(view, share.own.view(), model.constants),
+                          kernels.pair_contacts_first(view, share.cross.view(), model.constants),
+                          share.walls.add_forces(kernels, *surface, rows, model.constants, transfer.materials())});
+#pragma omp barrier
+      share.too_fast = kernels.move(view, share.range.begin, share.range.end, model.move, finishes && k + 1 == steps);
+#pragma omp barrier
+      for (const auto& s : shares) stop |= s.too_fast;
+#pragma omp master
+      done = k + 1, limit_broken = stop;
+    }
+    share.deepest = deepest;
+  }
+  return done;
+}
+
+void NativeEngine::Impl::check_overlaps(const Bed& bed) {
+  const auto& shares = lists->shares();
+  if (std::none_of(shares.begin(), shares.end(), [](const Share& s) { return s.deepest > 0; })) return;
+  std::string where = "near a wall";
+  double worst = 0;
+  for (const auto& s : shares)
+    for (std::int64_t k = 0; k < s.own.near_count() + s.cross.near_count(); ++k) {
+      const bool cross = k >= s.own.near_count();
+      const auto& list = cross ? s.cross : s.own;
+      const auto i = list.near_first(cross ? k - s.own.near_count() : k), j = list.near_second(cross ? k - s.own.near_count() : k);
+      const double sum = rows.radius[i] + rows.radius[j];
+      const double depth = (sum - norm(periods->nearest(rows.position_of(i) - rows.position_of(j)))) /
+                           std::min(rows.radius[i], rows.radius[j]);
+      if (depth <= worst) continue;
+      worst = depth;
+      const Vec3 p = rows.position_of(i);
+      where = fmt::format("of particles {} and {} at ({:.6g}, {:.6g}, {:.6g}) m", bed.id[rows.bed_index[i]],
+                          bed.id[rows.bed_index[j]], p.x, p.y, p.z);
+    }
+  throw NumericalError(fmt::format(
+      "an overlap {} exceeds {} of the radius (beyond the contact model) try a smaller step, a higher Young's "
+      "modulus, or starting positions that overlap less",
+      where, deepest_overlap));
+}
+
+NativeEngine::NativeEngine(const Bed& bed, const Vec3& gravity, double step_s, const EngineOptions& options)
+    : impl_(std::make_unique<Impl>(gravity, step_s, options)) {
+  if (!(step_s > 0)) throw InputError(fmt::format("dem.step_s = {} (must be positive)", step_s));
+  (void)bed;
+}
+
+NativeEngine::~NativeEngine() = default;
+
+void NativeEngine::advance(Bed& bed, double until_s) {
+  Impl& e = *impl_;
+  const double origin_s = bed.time_s - double(bed.step) * e.step_s;
+  const double start_s = std::abs(origin_s) < 1e-6 * e.step_s ? 0 : origin_s;  // rounding of the division is no offset
+  const auto last = static_cast<std::int64_t>(std::ceil((until_s - start_s) / e.step_s - 1e-6));
+  if (last <= bed.step) return;
+  e.load(bed);
+  std::int64_t step = bed.step;
+  const auto time_at = [&](std::int64_t k) { return start_s + double(k) * e.step_s; };
+  while (step < last) {
+    const double opens = WallSurface::next_change_s(e.walls, time_at(step));
+    auto steps = std::min(last - step, e.lists->prepare(e.rows, e.model, *e.periods, bed, *e.surface));
+    if (opens < time_at(step + steps))
+      steps = std::clamp<std::int64_t>(static_cast<std::int64_t>(std::ceil((opens - start_s) / e.step_s)) - step, 1, steps);
+    bool limit_broken = false;
+    const auto done = e.run(steps, step + steps == last, limit_broken);
+    step += done;
+    e.lists->spend(done, limit_broken);
+    e.check_overlaps(bed);
+    if (time_at(step) >= opens) {
+      e.surface->set_time(e.walls, time_at(step));
+      e.lists->walls_changed();
+    }
+  }
+  e.transfer.store(e.rows, e.lists->collect(e.rows), bed);
+  bed.step = last;
+  bed.time_s = time_at(last);
+}
+
+NearPairs NativeEngine::near_pairs(const Bed& bed, double max_gap_m) { return granrad::near_pairs(bed, max_gap_m); }
+
+EngineCounts NativeEngine::counts() const {
+  EngineCounts c;
+  if (!impl_->lists) return c;
+  for (const auto& s : impl_->lists->shares()) {
+    c.near_pairs += s.own.near_count() + s.cross.near_count();
+    c.tight_pairs += s.own.tight_count() + s.cross.tight_count();
+    c.touching += s.own.touching_count();
+    c.wall_contacts += s.walls.contact_count();
+  }
+  c.rebuilds = impl_->lists->rebuilds, c.refreshes = impl_->lists->refreshes;
+  const auto& r = impl_->rows;
+  const double rows = 8.0 * double(r.position.capacity() + r.velocity.capacity() + r.force.capacity() + r.kick.capacity() +
+                                   r.radius.capacity() + r.mass.capacity()) + 4.0 * double(3 * r.bed_index.capacity());
+  c.bytes_per_particle = r.count > 0 ? (rows + double(impl_->lists->bytes())) / double(r.count) : 0;
+  return c;
+}
+
+}  // namespace granrad::native
+
+namespace granrad {
+
+std::unique_ptr<Engine> make_native_engine(const Bed& bed, const Vec3& gravity_m_s2, double step_s, int threads) {
+  native::EngineOptions options;
+  options.threads = threads;
+  return std::make_unique<native::NativeEngine>(bed, gravity_m_s2, step_s, options);
+}
+
+}  // namespace granrad

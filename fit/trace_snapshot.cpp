@@ -1,0 +1,134 @@
+#include "fit/trace_snapshot.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "dem/scene/error.h"
+#include "dem/scene/import_stl.h"
+#include "dem/scene/snapshot.h"
+#include "raytrace/line_sweep.h"
+
+namespace granrad {
+
+namespace {
+
+/// Three numbers separated by commas.
+std::optional<Vec3> parse_vec3(const std::string& text) {
+  Vec3 v;
+  const char *at = text.data(), *const end = text.data() + text.size();
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [rest, failure] = std::from_chars(at, end, v[axis]);
+    if (failure != std::errc{} || !std::isfinite(v[axis])) return {};
+    if (axis < 2 && (rest == end || *rest != ',')) return {};
+    at = axis < 2 ? rest + 1 : rest;
+  }
+  if (at != end) return {};
+  return v;
+}
+
+void add_box(Bed& bed, const Box& box) {
+  for (auto& wall : box_walls(box)) {
+    wall.contact = false;  // moved outwards where a sphere pokes through
+    wall.role = WallRole::isothermal;
+    bed.walls.push_back(wall);
+  }
+  bed.box = box;
+}
+
+/// Everything: no particle is left out.
+Box unbounded() {
+  return {{-1e30, -1e30, -1e30}, {1e30, 1e30, 1e30}};
+}
+
+/// Directions that give the rays asked for: a line through a sphere is a ray from each of its two ends.
+LineOptions line_options(const TraceSettings& settings) {
+  LineOptions options;
+  const double per_direction = 2 * options.lines_per_disc * options.replicates;
+  options.directions = std::max(16, static_cast<int>(std::lround(settings.rays / per_direction)));
+  options.seed = settings.seed;
+  options.threads = settings.threads;
+  options.target_error = settings.error;
+  return options;
+}
+
+TraceOptions embree_options(const TraceSettings& settings) {
+  TraceOptions options;
+  options.rays_per_particle = settings.rays;
+  options.target_error = settings.error;
+  options.seed = settings.seed;
+  options.threads = settings.threads;
+  return options;
+}
+
+std::vector<double> surface_emissivities(const Enclosure& enclosure, const TraceSettings& settings) {
+  std::vector<double> emissivity(enclosure.surface_count(), settings.emissivity.value_or(1));
+  const bool grey = settings.emissivity || settings.wall_emissivity;
+  for (std::size_t w = 0; w < enclosure.walls.size(); ++w)
+    emissivity[enclosure.sphere_count() + w] =
+        grey ? settings.wall_emissivity.value_or(enclosure.walls[w].emissivity) : 1;
+  emissivity.back() = 1;
+  return emissivity;
+}
+
+}  // namespace
+
+Box parse_box(const std::string& text) {
+  const auto colon = text.find(':');
+  const auto size = parse_vec3(text.substr(0, colon));
+  const auto origin = colon == std::string::npos ? Vec3{} : parse_vec3(text.substr(colon + 1));
+  if (!size || !origin)
+    throw InputError(
+        fmt::format("--box: {} (not X,Y,Z or X,Y,Z:x0,y0,z0 in metres) try 0.010,0.004,0.050", text));
+  if (!(size->x > 0 && size->y > 0 && size->z > 0))
+    throw InputError(fmt::format("--box: {} (sizes must be positive) try 0.010,0.004,0.050", text));
+  return {*origin, *origin + *size};
+}
+
+TracedSnapshot read_enclosure(const std::filesystem::path& snapshot, const EnclosureSettings& settings) {
+  Bed bed = read_snapshot(snapshot, settings.radius_m).bed;
+  const bool own_walls = !bed.walls.empty();
+  if (own_walls && settings.box)
+    throw InputError(
+        fmt::format("--box: {} has walls of its own (two sets of walls would hide each other) drop --box",
+                    snapshot.string()));
+  if (!settings.stl.empty())
+    for (auto& wall : import_stl(settings.stl, 1, "walls")) {
+      wall.contact = false;
+      bed.walls.push_back(wall);
+    }
+  if (settings.box) add_box(bed, *settings.box);
+  TracedSnapshot result;
+  result.enclosure = make_enclosure(bed, settings.box || own_walls ? bed.box : unbounded());
+  result.left_out = bed.size() - result.enclosure.sphere_count();
+  return result;
+}
+
+void trace(TracedSnapshot& snapshot, const TraceSettings& settings) {
+  snapshot.emissivity = surface_emissivities(snapshot.enclosure, settings);
+  const bool grey = settings.emissivity || settings.wall_emissivity;
+  if (settings.method == TraceMethod::lines && grey)
+    throw InputError(
+        "--emissivity: lines trace black surfaces (a path of reflections is no straight line) use --method "
+        "embree");
+  if (grey)
+    snapshot.counts = trace_total_exchange(snapshot.enclosure, snapshot.emissivity, embree_options(settings));
+  else if (settings.method == TraceMethod::lines)
+    snapshot.counts = sweep_view_factors(snapshot.enclosure, line_options(settings));
+  else
+    snapshot.counts = trace_view_factors(snapshot.enclosure, embree_options(settings));
+  snapshot.check = self_check(snapshot.enclosure, snapshot.counts);
+}
+
+std::string self_check_line(const SelfCheck& check) {
+  return fmt::format(
+      "self-check {}: closure {:.1e}, reciprocity chi2 {:.3f}, mean chord {}, leaked rays {}",
+      check.failed.empty() ? "passed" : "FAILED (" + check.failed + ")", check.closure_defect,
+      check.reciprocity_chi2,
+      check.mean_chord_ratio > 0 ? fmt::format("{:.4f} of 4V/S", check.mean_chord_ratio) : "not known",
+      check.leaked);
+}
+
+}  // namespace granrad

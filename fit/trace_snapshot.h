@@ -1,0 +1,53 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "raytrace/enclosure.h"
+#include "raytrace/exchange.h"
+#include "raytrace/view_factors.h"
+
+namespace granrad {
+
+enum class TraceMethod { embree, lines };
+
+/// What `vfgen trace` is asked for.
+struct TraceSettings {
+  TraceMethod method = TraceMethod::embree;
+  double rays = 10000;                    ///< per particle; walls in proportion to area
+  double error = 0;                       ///< > 0: instead of rays
+  std::optional<double> emissivity;       ///< grey particles: total exchange areas; embree only
+  std::optional<double> wall_emissivity;  ///< default: each wall's own
+  std::uint64_t seed = 1;
+  int threads = 0;
+};
+
+/// How a snapshot without walls becomes an enclosure.
+struct EnclosureSettings {
+  double radius_m = 0;        ///< for files without a radius column
+  std::optional<Box> box;     ///< six black walls around
+  std::filesystem::path stl;  ///< walls of a mesh, metres
+};
+
+struct TracedSnapshot {
+  Enclosure enclosure;
+  std::vector<double> emissivity;  ///< by surface; 1 for view factors
+  HitCounts counts;
+  SelfCheck check;
+  std::size_t left_out = 0;  ///< particles with their centre outside the box
+};
+
+/// "X,Y,Z" or "X,Y,Z:x0,y0,z0" in metres. Throws InputError.
+Box parse_box(const std::string& text);
+
+/// Reads a snapshot and gives it its walls: its own, those of `stl`, and the box. Throws InputError, IoError.
+TracedSnapshot read_enclosure(const std::filesystem::path& snapshot, const EnclosureSettings& settings);
+
+/// Traces it and checks the result; the caller decides what a failed check means.
+void trace(TracedSnapshot& snapshot, const TraceSettings& settings);
+
+/// "closure 1.2e-16, reciprocity chi2 1.01, mean chord 1.0002, leaked 0".
+std::string self_check_line(const SelfCheck& check);
+
+}  // namespace granrad

@@ -1,0 +1,166 @@
+// Requirement: exchange areas from global parallel lines agree with closed forms within their own standard
+// errors, for touching, distant, overlapping and very unequal spheres, and for walls. Errors are those of the
+// mean over 12 independent runs (Student, 11 degrees of freedom: |z| < 4.4 is 1 in 1000).
+#include <gtest/gtest.h>
+
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+
+#include "dem/scene/constants.h"
+#include "raytrace/exact.h"
+#include "tests/line_cases.h"
+
+namespace granrad {
+namespace {
+
+constexpr double student_limit = 4.4;
+constexpr int runs = 12;
+
+LineOptions options(std::uint64_t seed, int directions = 600) {
+  LineOptions o;
+  o.directions = directions;
+  o.seed = seed;
+  return o;
+}
+
+/// X_ij over the sampled area of i, so that only the directions' share of j is judged.
+Repeated measured_factor(const Enclosure& e, std::size_t i, std::size_t j, int directions = 600) {
+  return repeat(runs, [&](std::uint64_t seed) {
+    return factor(sweep_view_factors(e, options(seed, directions)), i, j);
+  });
+}
+
+double lens(double a, double b, double d) {
+  if (d >= a + b) return 0;
+  if (d <= std::abs(a - b)) return pi * std::min(a, b) * std::min(a, b);
+  const double x = (d * d + a * a - b * b) / (2 * d * a), y = (d * d + b * b - a * a) / (2 * d * b);
+  const double root = (a + b - d) * (d + a - b) * (d - a + b) * (d + a + b);
+  return a * a * std::acos(x) + b * b * std::acos(y) - 0.5 * std::sqrt(root);
+}
+
+/// Share of the lines through sphere 1 that also meet sphere 2, for any distance: the two-sphere factor, and
+/// where they overlap that of the rule "a ray that starts inside a neighbour hits it at once", mean of both
+/// ways.
+double lens_factor(double r1, double r2, double s) {
+  const double edge = std::asin(std::min(1.0, (r1 + r2) / s)),
+               inner = std::asin(std::min(1.0, std::abs(r1 - r2) / s));
+  const auto f = [&](double t) { return std::sin(t) * lens(r1, r2, s * std::sin(t)); };
+  using Rule = boost::math::quadrature::gauss_kronrod<double, 61>;
+  return (Rule::integrate(f, 0.0, inner, 12, 1e-10) + Rule::integrate(f, inner, edge, 12, 1e-10)) /
+         (2 * pi * r1 * r1);
+}
+
+const Box cube{{0, 0, 0}, {0.02, 0.02, 0.02}};
+constexpr double r = 4e-4;
+
+Enclosure pair(double r1, double r2, double s) {
+  const Vec3 axis = normalized({0.36, 0.48, 0.8}), at{0.01, 0.01, 0.01};
+  return boxed(spheres_in_open_space({at, at + s * axis}, {r1, r2}), cube);
+}
+
+// Catches (planted and seen): X = (h^2/D) S, half the lines; sorting by u instead of depth leaves this green,
+// as two spheres are neighbours either way: the bed test sees that one.
+TEST(LineFactors, TwoSpheres) {
+  for (const double s : {2.0, 2.5, 4.0}) {
+    const Repeated f = measured_factor(pair(r, r, s * r), 0, 1);
+    EXPECT_LT(std::abs(f.sigmas_off(exact_two_sphere(r, r, s * r))), student_limit) << "distance " << s;
+    EXPECT_LT(f.error, 0.02 * f.mean) << "distance " << s;
+  }
+}
+
+TEST(LineFactors, UnequalSpheres) {
+  const Repeated third = measured_factor(pair(r, r / 3, 1.4 * r), 1, 0);
+  EXPECT_LT(std::abs(third.sigmas_off(exact_two_sphere(r / 3, r, 1.4 * r))), student_limit);
+}
+
+// Ratio 100: the lattice resolves the small sphere, the large one covers 10^4 times as many lines.
+TEST(LineFactors, RatioOfAHundred) {
+  const Enclosure e = pair(100 * 2e-5, 2e-5, 101 * 2e-5);
+  const Repeated small_to_large = measured_factor(e, 1, 0, 60);
+  EXPECT_LT(std::abs(small_to_large.sigmas_off(exact_two_sphere(2e-5, 2e-3, 101 * 2e-5))), student_limit);
+  EXPECT_LT(small_to_large.error, 0.02);
+}
+
+TEST(LineFactors, OverlappingSpheres) {
+  for (const double delta : {1e-8, 1e-5, 1e-3, 5e-2}) {
+    const double s = (2 - delta) * r;
+    const Repeated f = measured_factor(pair(r, r, s), 0, 1);
+    EXPECT_LT(std::abs(f.sigmas_off(lens_factor(r, r, s))), student_limit) << "overlap " << delta;
+  }
+  const double small = r / 3, s = r + small * (1 - 5e-2);
+  const Repeated f = measured_factor(pair(r, small, s), 1, 0);
+  EXPECT_LT(std::abs(f.sigmas_off(lens_factor(small, r, s))), student_limit) << "overlap of unequal spheres";
+}
+
+// An overlap of a whole radius, far beyond any bed, where it can be told apart: ordering by anything but the
+// chords (planted: by the nearest point of each sphere) still gives one exchange per line, so only the lens
+// sum is judged.
+TEST(LineFactors, HalfBuriedSphere) {
+  const Repeated f = measured_factor(pair(r, r, r), 0, 1);
+  EXPECT_LT(std::abs(f.sigmas_off(lens_factor(r, r, r))), student_limit);
+}
+
+TEST(LineFactors, SphereAndWalls) {
+  // One nanometre from y_min, off centre in the channel, and the same a hundred metres from the origin.
+  for (const double offset : {0.0, 100.0}) {
+    Box box = channel();
+    const Vec3 shift{offset, offset, offset};
+    box.min += shift, box.max += shift;
+    const Vec3 centre = Vec3{0.003, r + 1e-9, 0.02} + shift;
+    const Enclosure e = boxed(spheres_in_open_space({centre}, {r}), box);
+    for (std::size_t w : {0u, 1u, 2u, 3u, 5u}) {
+      const Repeated f = measured_factor(e, 0, 1 + w, 300);
+      const double exact = exact_sphere_polygon(centre, e.walls[w]);
+      EXPECT_LT(std::abs(f.sigmas_off(exact)), student_limit) << e.walls[w].name << " at " << offset;
+    }
+  }
+}
+
+// Catches (planted and seen): a wall polygon filled over [left, right] instead of [left, right).
+TEST(LineFactors, EmptyBox) {
+  const auto exact = exact_empty_box(channel());
+  const Enclosure e = boxed(spheres_in_open_space({}, {}), channel());
+  for (std::size_t i = 0; i < 6; ++i)
+    for (std::size_t j = i + 1; j < 6; ++j) {
+      const Repeated f = measured_factor(e, i, j, 100);
+      EXPECT_LT(std::abs(f.sigmas_off(exact[i][j])), student_limit) << i << " to " << j;
+      EXPECT_LT(f.error, 0.01);
+    }
+}
+
+// A tetrahedron and an octahedron of planar walls: convex, but no box. By symmetry each face of the
+// tetrahedron sees each other one with 1/3; a sphere in the middle of the octahedron sees each face with 1/8.
+TEST(LineFactors, ConvexPolyhedra) {
+  const auto face = [](const char* name, Vec3 a, Vec3 b, Vec3 c, const Vec3& inside) {
+    if (dot(cross(b - a, c - a), inside - a) < 0) std::swap(b, c);
+    Wall w;
+    w.name = name;
+    w.vertices = {a, b, c};
+    return w;
+  };
+  const Vec3 a{1, 1, 1}, b{1, -1, -1}, c{-1, 1, -1}, d{-1, -1, 1}, middle{};
+  Enclosure tetrahedron;
+  tetrahedron.walls = {face("abc", a, b, c, middle), face("abd", a, b, d, middle),
+                       face("acd", a, c, d, middle), face("bcd", b, c, d, middle)};
+  const Repeated third = measured_factor(tetrahedron, 0, 1, 100);
+  EXPECT_LT(std::abs(third.sigmas_off(1.0 / 3)), student_limit);
+
+  Enclosure octahedron = spheres_in_open_space({middle}, {0.2});
+  for (int k = 0; k < 8; ++k) {
+    const Vec3 x{k & 1 ? 1.0 : -1.0, 0, 0}, y{0, k & 2 ? 1.0 : -1.0, 0}, z{0, 0, k & 4 ? 1.0 : -1.0};
+    octahedron.walls.push_back(face("face", x, y, z, middle));
+  }
+  for (std::size_t w = 1; w < 9; ++w)
+    EXPECT_LT(std::abs(measured_factor(octahedron, 0, w, 100).sigmas_off(0.125)), student_limit) << w;
+  EXPECT_EQ(hits(sweep_view_factors(octahedron, options(1)), 0, 9), 0)
+      << "nothing leaves a closed polyhedron";
+}
+
+TEST(LineFactors, OpenSpace) {
+  const HitCounts lone = sweep_view_factors(spheres_in_open_space({{1, 2, 3}}, {r}), options(1));
+  EXPECT_EQ(factor(lone, 0, 1), 1);
+  const Repeated f = measured_factor(spheres_in_open_space({{0, 0, 0}, {0, 2 * r, 0}}, {r, r}), 0, 2);
+  EXPECT_LT(std::abs(f.sigmas_off(1 - 0.0755868184216)), student_limit);
+}
+
+}  // namespace
+}  // namespace granrad

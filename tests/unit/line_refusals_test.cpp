@@ -1,0 +1,80 @@
+// Requirement: what parallel lines cannot treat is refused with the reason and what to try instead.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <limits>
+
+#include "dem/scene/error.h"
+#include "raytrace/line_kernel.h"
+#include "tests/line_cases.h"
+
+namespace granrad {
+namespace {
+
+std::string refusal(const Enclosure& e, const LineOptions& o = {}) {
+  try {
+    sweep_view_factors(e, o);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+Enclosure lone_sphere() {
+  return boxed(spheres_in_open_space({{0.001, 0.001, 0.001}}, {4e-4}), channel());
+}
+
+bool mentions(const std::string& text, const char* word) {
+  return text.find(word) != std::string::npos;
+}
+
+TEST(LineRefusals, GeometryLinesCannotTreat) {
+  Enclosure periodic = lone_sphere();
+  periodic.periodic[1] = true;
+  EXPECT_TRUE(mentions(refusal(periodic), "periodic direction y"));
+
+  Enclosure mesh = lone_sphere();
+  mesh.walls[0].triangles = {{0, 1, 2}, {0, 2, 3}};
+  EXPECT_TRUE(mentions(refusal(mesh), "try embree"));
+
+  Enclosure baffle = lone_sphere();
+  Wall plate = baffle.walls[0];
+  for (Vec3& p : plate.vertices) p.x += 0.005;
+  plate.name = "baffle";
+  baffle.walls.push_back(plate);
+  EXPECT_TRUE(mentions(refusal(baffle), "baffle"));
+}
+
+TEST(LineRefusals, ParticlesOutsideAndNaN) {
+  Enclosure outside = lone_sphere();
+  outside.centre_m[0].z = -0.001;
+  EXPECT_TRUE(mentions(refusal(outside), "z_min"));
+  Enclosure nan = lone_sphere();
+  nan.centre_m[0].x = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(mentions(refusal(nan), "must be finite"));
+  Enclosure flat = lone_sphere();
+  flat.radius_m[0] = 0;
+  EXPECT_TRUE(mentions(refusal(flat), "must be finite"));
+}
+
+TEST(LineRefusals, OptionsWithoutMeaning) {
+  LineOptions o;
+  o.replicates = 1;
+  o.directions = 0;
+  const std::string text = refusal(lone_sphere(), o);
+  EXPECT_TRUE(mentions(text, "replicates = 1") && mentions(text, "directions = 0")) << text;
+}
+
+TEST(LineRefusals, EmptyEnclosureGivesNothing) {
+  const HitCounts none = sweep_view_factors(Enclosure{}, {});
+  EXPECT_EQ(none.launched, std::vector<std::int64_t>{0});
+}
+
+TEST(LineRefusals, UnknownInstructionSet) {
+  setenv("GRANRAD_SIMD", "mmx", 1);
+  EXPECT_THROW(line_kernels(), InputError);
+  unsetenv("GRANRAD_SIMD");
+}
+
+}  // namespace
+}  // namespace granrad
