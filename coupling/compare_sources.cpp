@@ -11,7 +11,6 @@ namespace granrad {
 
 namespace {
 
-constexpr int draws_per_instant = 16;             // of a source that draws anew at each update
 constexpr std::uint64_t first_draw = 1ULL << 40;  // random numbers no update of the run uses
 
 double mean(const std::vector<double>& values) {
@@ -27,9 +26,8 @@ double rms(const std::vector<double>& values) {
 }
 
 /// Mean of several draws where draws differ, with its noise.
-SourceInstant observe(Simulation& simulation, const Case& c) {
+SourceInstant observe(Simulation& simulation, const Case& c, int draws) {
   const Bed& bed = simulation.bed();
-  const int draws = c.heat.radiation.kind == RadiationKind::paths ? draws_per_instant : 1;
   std::vector<double> heat(bed.size(), 0.0), variance(bed.size(), 0.0);
   for (int k = 0; k < draws; ++k) {
     const auto drawn = simulation.draw_radiation(first_draw + k);
@@ -63,7 +61,7 @@ SourceInstant observe(Simulation& simulation, const Case& c) {
 }  // namespace
 
 SourceTrack heat_frozen_bed(const Case& c, const Bed& bed, const RadiationSettings& radiation,
-                            const std::vector<double>& times_s, int threads,
+                            const std::vector<double>& times_s, int draws, int threads,
                             const std::function<void(double)>& progress) {
   Case frozen = c;
   frozen.flow.engine = EngineKind::none;
@@ -87,7 +85,7 @@ SourceTrack heat_frozen_bed(const Case& c, const Bed& bed, const RadiationSettin
           mean_temperature_K(simulation.bed(), in_region(simulation.bed(), frozen.flow.region)));
       progress(simulation.bed().time_s);
     }
-    track.at.push_back(observe(simulation, frozen));
+    track.at.push_back(observe(simulation, frozen, radiation.kind == RadiationKind::paths ? draws : 1));
   }
   return track;
 }

@@ -36,7 +36,7 @@ struct SourceComparison {
 /// Heats `bed` (frozen) from its present temperatures to the last of times_s with the source `radiation`;
 /// everything else as the case says. `progress` is called with the time reached.
 SourceTrack heat_frozen_bed(const Case& c, const Bed& bed, const RadiationSettings& radiation,
-                            const std::vector<double>& times_s, int threads,
+                            const std::vector<double>& times_s, int draws, int threads,
                             const std::function<void(double)>& progress);
 
 SourceComparison compare(const SourceInstant& source, const SourceInstant& reference);

@@ -161,7 +161,8 @@ RadiosityResult solve_radiosity(const ExchangeAreas& areas, const std::vector<do
   // Closed rows let any reference be taken off: an isothermal enclosure then gives exactly 0.
   double reference = std::numeric_limits<double>::infinity();
   for (Eigen::Index i = 0; i < count; ++i)
-    if (eps[i] > 0) reference = std::min(reference, power[i]);
+    if (eps[i] > 0 && areas.pattern.row_begin[i] < areas.pattern.row_begin[i + 1])
+      reference = std::min(reference, power[i]);
   if (!std::isfinite(reference)) reference = 0;
 
   RadiosityResult result;

@@ -38,7 +38,7 @@ Average average(const std::vector<double>& rows) {
 }
 
 void line(const char* what, const Average& average, const char* unit) {
-  if (!std::isfinite(average.mean)) return;
+  if (!std::isfinite(average.mean) || average.mean == 0) return;
   if (std::isfinite(average.standard_error))
     fmt::print("  {:<34}{:>12.5g} +- {:<9.2g} {}\n", what, average.mean, average.standard_error, unit);
   else

@@ -21,6 +21,7 @@ namespace {
 
 constexpr double reference_rays_per_particle = 20000;
 constexpr double reference_walks = 100000;
+constexpr int reference_draws = 16;
 const std::vector<double> usual_times_s = {0.01, 0.1, 1, 5};
 
 bool any_wall(const Case& c, bool (*is)(const Wall&)) {
@@ -156,8 +157,8 @@ int validate_case(const Case& c, const fs::path& folder, const RunOptions& optio
     ValidatedBed result{name, solid_fraction(bed, c.flow.region), bed.size(), {}};
     for (std::size_t k = 0; k < sources.size(); ++k) {
       Progress progress(fmt::format("{}, {}", name, source_label(sources[k])), times.back(), options.quiet());
-      result.tracks.push_back(heat_frozen_bed(c, bed, sources[k], times, options.threads,
-                                              [&](double time) { progress.update(time); }));
+      result.tracks.push_back(heat_frozen_bed(c, bed, sources[k], times, k == 0 ? reference_draws : 1,
+                                              options.threads, [&](double time) { progress.update(time); }));
       if (k == 0) result.tracks.back().label += " (reference)";
       progress.finish();
     }

@@ -52,8 +52,13 @@ std::vector<SizeClass> size_classes(const Bed& bed, const std::vector<Vec3>& poi
 
 class ParticleSearch {
  public:
-  ParticleSearch(const Bed& bed, const std::vector<Vec3>& points, const std::vector<SizeClass>& classes, double gap)
-      : bed_(bed), points_(points), classes_(classes), gap_(gap), class_of_(bed.size()),
+  ParticleSearch(const Bed& bed, const std::vector<Vec3>& points, const std::vector<SizeClass>& classes,
+                 double gap)
+      : bed_(bed),
+        points_(points),
+        classes_(classes),
+        gap_(gap),
+        class_of_(bed.size()),
         periodic_(bed.periodic[0] || bed.periodic[1] || bed.periodic[2]) {
     for (std::size_t c = 0; c < classes.size(); ++c)
       for (const auto i : classes[c].grid.members()) class_of_[i] = static_cast<std::int32_t>(c);
@@ -145,7 +150,8 @@ std::vector<NearWall> find_walls(const Bed& bed, const std::vector<SizeClass>& c
                              const double most = bed.radius_m[i] + gap;
                              if (std::abs(dot(face.normal, at + shift - face.vertices[0])) > most) return;
                              const double distance = distance_to(face, at + shift);
-                             if (distance <= most) found.push_back({i, static_cast<std::int32_t>(w), distance});
+                             if (distance <= most)
+                               found.push_back({i, static_cast<std::int32_t>(w), distance});
                            });
         }
   }

@@ -80,7 +80,8 @@ double PlugFeed::leaves_below_m() const {
 void PlugFeed::add(Bed& bed, const Vec3& position) const {
   const auto transverse = random_normal2(settings_.seed, velocity_stream, bed.next_id);
   const double std = settings_.transverse_velocity_std_m_s;
-  bed.add(position, {std * transverse[0], std * transverse[1], -speed_}, radius_, temperature_);
+  bed.add(position, {std * transverse[0], std * transverse[1], -speed_ * (1 + faster_)}, radius_,
+          temperature_);
 }
 
 void PlugFeed::start(Bed& bed) {
@@ -120,7 +121,8 @@ void PlugFeed::reshuffle() {
     return std::abs(std::remainder(p.z - end, period)) > held;
   };
   const std::vector<double> radii(column_.size(), radius_);
-  // Long moves across, short ones along: the number of spheres in a channel's height of tape stays what it is.
+  // Long moves across, short ones along: the number of spheres in a channel's height of tape stays what it
+  // is.
   const double gap = 2 * radius_ * std::max(0.01, std::cbrt(0.6 / settings_.solid_fraction) - 1);
   const double along = std::min(gap, 0.2 * radius_);
   const Vec3 half = tape_.box.size() * 0.5;
@@ -129,9 +131,32 @@ void PlugFeed::reshuffle() {
                 reshuffle_stream + half_periods_, away_from_end);
 }
 
+/// Adds to the mean of this half period, once the channel has been filled.
+void PlugFeed::measure_solid_fraction(const Bed& bed) {
+  if (!settings_.start_filled && used_m_ < insertion_plane_m() - leaves_below_m()) return;
+  double volume = 0;
+  for (std::size_t i = 0; i < bed.size(); ++i)
+    if (channel_.contains(bed.position_m[i])) volume += sphere_volume(bed.radius_m[i]);
+  measured_sum_ += volume / channel_.volume();
+  ++measured_;
+}
+
+/// Integral control, one correction per half period: newcomers answer over a whole period, which is stable up
+/// to a gain of 0.77 (an integrator with a delay of one and a half samples).
+void PlugFeed::correct_speed() {
+  constexpr double gain = 0.4, most = 0.1;
+  if (measured_ > 0) {
+    const double excess = measured_sum_ / static_cast<double>(measured_) / settings_.solid_fraction - 1;
+    const double one_particle = 1.0 / static_cast<double>(column_.size());
+    if (std::abs(excess) > one_particle) faster_ = std::clamp(faster_ + gain * excess, -most, most);
+  }
+  measured_sum_ = 0, measured_ = 0;
+}
+
 void PlugFeed::insert_due(Bed& bed, FeedTotals& totals) {
   reflect_above_channel(bed);
   const double moved = speed_ * (bed.time_s - start_s_), half_period = 0.5 * tape_.box.max.z;
+  measure_solid_fraction(bed);
   auto near = particles_near_inlet(bed, moved - used_m_);
   place_waiting(bed, near, totals);
   while (used_m_ < moved) {
@@ -142,6 +167,7 @@ void PlugFeed::insert_due(Bed& bed, FeedTotals& totals) {
     used_m_ = until;
     if (until == next_half) {
       ++half_periods_;
+      correct_speed();
       reshuffle();
     }
   }
@@ -229,22 +255,22 @@ void PlugFeed::reflect_above_channel(Bed& bed) const {
 }
 
 void PlugFeed::save(StateBlock& state) const {
-  state.integers["plug_counters"] = {half_periods_, tries_};
+  state.integers["plug_counters"] = {half_periods_, tries_, measured_};
   auto& reals = state.reals["plug_tape"];
-  reals = {start_s_, used_m_};
+  reals = {start_s_, used_m_, faster_, measured_sum_};
   for (const Vec3& p : column_) reals.insert(reals.end(), {p.x, p.y, p.z});
 }
 
 void PlugFeed::load(const StateBlock& state) {
   const auto& counters = state.integers.at("plug_counters");
   const auto& reals = state.reals.at("plug_tape");
-  if (reals.size() != 2 + 3 * column_.size())
+  if (reals.size() != 4 + 3 * column_.size())
     throw InputError(
         "checkpoint: plug feed state of another scene (number of particles on the tape differs)");
-  half_periods_ = counters[0], tries_ = counters[1];
-  start_s_ = reals[0], used_m_ = reals[1];
+  half_periods_ = counters[0], tries_ = counters[1], measured_ = counters[2];
+  start_s_ = reals[0], used_m_ = reals[1], faster_ = reals[2], measured_sum_ = reals[3];
   for (std::size_t i = 0; i < column_.size(); ++i)
-    column_[i] = {reals[2 + 3 * i], reals[3 + 3 * i], reals[4 + 3 * i]};
+    column_[i] = {reals[4 + 3 * i], reals[5 + 3 * i], reals[6 + 3 * i]};
 }
 
 }  // namespace granrad

@@ -15,11 +15,10 @@ namespace granrad {
 
 namespace {
 
-constexpr double fit_overshoot =
-    0.01;  ///< of the contact value: what a least-squares curve may exceed a bound by
-constexpr double growth_allowed = 0.05;   ///< of the contact value
-constexpr double closure_allowed = 0.25;  ///< mean row sum off 1
-constexpr double step = 0.01;             ///< in d*
+constexpr double overshoot_noted = 0.01, overshoot_allowed = 0.10;  ///< of the contact value
+constexpr double growth_allowed = 0.05;                             ///< of the contact value
+constexpr double closure_allowed = 0.25;                            ///< mean row sum off 1
+constexpr double step = 0.01;                                       ///< in d*
 
 /// A curve over distance with its upper bound, as a table holds it.
 struct CheckedCurve {

@@ -65,15 +65,18 @@ TraceOptions embree_options(const TraceSettings& settings) {
 
 std::vector<double> surface_emissivities(const Enclosure& enclosure, const TraceSettings& settings) {
   std::vector<double> emissivity(enclosure.surface_count(), settings.emissivity.value_or(1));
-  const bool grey = settings.emissivity || settings.wall_emissivity;
   for (std::size_t w = 0; w < enclosure.walls.size(); ++w)
     emissivity[enclosure.sphere_count() + w] =
-        grey ? settings.wall_emissivity.value_or(enclosure.walls[w].emissivity) : 1;
+        settings.wall_emissivity.value_or(enclosure.walls[w].emissivity);
   emissivity.back() = 1;
   return emissivity;
 }
 
 }  // namespace
+
+const char* to_string(TraceMethod method) {
+  return method == TraceMethod::lines ? "lines" : "embree";
+}
 
 Box parse_box(const std::string& text) {
   const auto colon = text.find(':');
@@ -87,7 +90,7 @@ Box parse_box(const std::string& text) {
   return {*origin, *origin + *size};
 }
 
-TracedSnapshot read_enclosure(const std::filesystem::path& snapshot, const EnclosureSettings& settings) {
+SnapshotEnclosure read_enclosure(const std::filesystem::path& snapshot, const EnclosureSettings& settings) {
   Bed bed = read_snapshot(snapshot, settings.radius_m).bed;
   const bool own_walls = !bed.walls.empty();
   if (own_walls && settings.box)
@@ -100,26 +103,36 @@ TracedSnapshot read_enclosure(const std::filesystem::path& snapshot, const Enclo
       bed.walls.push_back(wall);
     }
   if (settings.box) add_box(bed, *settings.box);
-  TracedSnapshot result;
+  SnapshotEnclosure result;
   result.enclosure = make_enclosure(bed, settings.box || own_walls ? bed.box : unbounded());
   result.left_out = bed.size() - result.enclosure.sphere_count();
   return result;
 }
 
-void trace(TracedSnapshot& snapshot, const TraceSettings& settings) {
-  snapshot.emissivity = surface_emissivities(snapshot.enclosure, settings);
+ViewFactorFile trace(const Enclosure& enclosure, const TraceSettings& settings, const std::string& origin) {
   const bool grey = settings.emissivity || settings.wall_emissivity;
   if (settings.method == TraceMethod::lines && grey)
     throw InputError(
-        "--emissivity: lines trace black surfaces (a path of reflections is no straight line) use --method "
-        "embree");
-  if (grey)
-    snapshot.counts = trace_total_exchange(snapshot.enclosure, snapshot.emissivity, embree_options(settings));
-  else if (settings.method == TraceMethod::lines)
-    snapshot.counts = sweep_view_factors(snapshot.enclosure, line_options(settings));
-  else
-    snapshot.counts = trace_view_factors(snapshot.enclosure, embree_options(settings));
-  snapshot.check = self_check(snapshot.enclosure, snapshot.counts);
+        "--emissivity: lines trace black surfaces (a path of reflections is no straight line) use "
+        "--method embree");
+  ViewFactorFile traced;
+  traced.enclosure = enclosure;
+  traced.method = to_string(settings.method);
+  traced.origin = origin;
+  traced.seed = settings.seed;
+  if (grey) {
+    traced.emissivity = surface_emissivities(enclosure, settings);
+    traced.counts = trace_total_exchange(enclosure, traced.emissivity, embree_options(settings));
+  } else if (settings.method == TraceMethod::lines) {
+    traced.counts = sweep_view_factors(enclosure, line_options(settings));
+  } else {
+    traced.counts = trace_view_factors(enclosure, embree_options(settings));
+  }
+  traced.check = self_check(enclosure, traced.counts);
+  ClosureReport report;
+  traced.closed = close(one_way_estimate(traced.counts), traced.closure, report);
+  traced.closure_correction_max = report.largest_correction;
+  return traced;
 }
 
 std::string self_check_line(const SelfCheck& check) {

@@ -6,11 +6,12 @@
 
 #include "raytrace/enclosure.h"
 #include "raytrace/exchange.h"
-#include "raytrace/view_factors.h"
+#include "raytrace/view_factor_file.h"
 
 namespace granrad {
 
 enum class TraceMethod { embree, lines };
+const char* to_string(TraceMethod method);
 
 /// What `vfgen trace` is asked for.
 struct TraceSettings {
@@ -30,11 +31,9 @@ struct EnclosureSettings {
   std::filesystem::path stl;  ///< walls of a mesh, metres
 };
 
-struct TracedSnapshot {
+/// The surfaces of a snapshot.
+struct SnapshotEnclosure {
   Enclosure enclosure;
-  std::vector<double> emissivity;  ///< by surface; 1 for view factors
-  HitCounts counts;
-  SelfCheck check;
   std::size_t left_out = 0;  ///< particles with their centre outside the box
 };
 
@@ -42,10 +41,10 @@ struct TracedSnapshot {
 Box parse_box(const std::string& text);
 
 /// Reads a snapshot and gives it its walls: its own, those of `stl`, and the box. Throws InputError, IoError.
-TracedSnapshot read_enclosure(const std::filesystem::path& snapshot, const EnclosureSettings& settings);
+SnapshotEnclosure read_enclosure(const std::filesystem::path& snapshot, const EnclosureSettings& settings);
 
-/// Traces it and checks the result; the caller decides what a failed check means.
-void trace(TracedSnapshot& snapshot, const TraceSettings& settings);
+/// Traces, closes (reciprocal) and checks; the caller decides what a failed check means.
+ViewFactorFile trace(const Enclosure& enclosure, const TraceSettings& settings, const std::string& origin);
 
 /// "closure 1.2e-16, reciprocity chi2 1.01, mean chord 1.0002, leaked 0".
 std::string self_check_line(const SelfCheck& check);

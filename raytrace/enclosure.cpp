@@ -59,17 +59,18 @@ void refuse_spheres_behind_box_walls(const Bed& bed, const Enclosure& enclosure,
     for (std::size_t s = 0; s < enclosure.sphere_count(); ++s)
       if (dot(normal, enclosure.centre_m[s] - wall.vertices[0]) < 0 && behind++ == 0) first = s;
     if (behind > 0)
-      problems.push_back(fmt::format("{} particles have their centre behind wall {}, first particle {} (a particle "
-                                     "must lie inside the box): enlarge the box or drop them",
-                                     behind, wall.name, bed.id[enclosure.particle[first]]));
+      problems.push_back(
+          fmt::format("{} particles have their centre behind wall {}, first particle {} (a particle "
+                      "must lie inside the box): enlarge the box or drop them",
+                      behind, wall.name, bed.id[enclosure.particle[first]]));
   }
   if (!problems.empty()) throw InputError(problems);
 }
 
-/// Where corner `corner` of a polygon goes when the plane it lies on moves by `distance` against `normal`: along
-/// the polygon's edge that leaves the plane. Empty when both edges stay in the plane.
-std::optional<Vec3> slide_along_edge(const Wall& polygon, std::size_t corner, const Vec3& normal, double distance,
-                                     double tolerance) {
+/// Where corner `corner` of a polygon goes when the plane it lies on moves by `distance` against `normal`:
+/// along the polygon's edge that leaves the plane. Empty when both edges stay in the plane.
+std::optional<Vec3> slide_along_edge(const Wall& polygon, std::size_t corner, const Vec3& normal,
+                                     double distance, double tolerance) {
   const std::size_t n = polygon.vertices.size();
   const Vec3& v = polygon.vertices[corner];
   for (const std::size_t next : {(corner + 1) % n, (corner + n - 1) % n}) {

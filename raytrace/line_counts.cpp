@@ -88,36 +88,48 @@ void PairCounts::add(std::size_t at, const std::int32_t* ids, std::size_t n, std
 }
 
 void PairCounts::keep_within_limit(std::uint64_t seed) {
-  std::size_t entries = 0;
-  for (const Row& row : rows_) entries += row.used;
-  while (entries > max_entries_) entries = thin(unit_ *= 2, seed);
+#pragma omp single
+  {
+    entries_ = 0;
+    for (const Row& row : rows_) entries_ += row.used;
+  }
+  for (;;) {
+    const bool too_many = entries_ > max_entries_;
+#pragma omp barrier
+    if (!too_many) return;
+#pragma omp single
+    {
+      unit_ *= 2;
+      entries_ = 0;
+    }
+    std::size_t mine = 0;
+#pragma omp for schedule(dynamic, 256) nowait
+    for (std::size_t i = 0; i < rows_.size(); ++i) mine += thin(i, seed);
+#pragma omp atomic
+    entries_ += mine;
+#pragma omp barrier
+  }
 }
 
-std::size_t PairCounts::thin(int unit, std::uint64_t seed) {
-  std::size_t entries = 0;
-  const auto rows = static_cast<std::int64_t>(rows_.size());
-#pragma omp parallel for schedule(dynamic, 256) reduction(+ : entries)
-  for (std::int64_t i = 0; i < rows; ++i) {
-    Row kept;
-    std::vector<Entry> survivors;
-    for (Entry e : rows_[i].slots) {
-      if (e.id == free_slot) continue;
-      const std::int64_t n = e.current + static_cast<std::int64_t>(e.total);
-      if (n < unit) {
-        if (lot(seed, i, e.id, unit) * unit >= static_cast<double>(n)) continue;
-        e.current += static_cast<std::int32_t>(unit - n);
-      }
-      survivors.push_back(e);
+std::size_t PairCounts::thin(std::size_t i, std::uint64_t seed) {
+  std::vector<Entry> survivors;
+  for (Entry e : rows_[i].slots) {
+    if (e.id == free_slot) continue;
+    const std::int64_t n = e.current + static_cast<std::int64_t>(e.total);
+    if (n < unit_) {
+      if (lot(seed, i, e.id, unit_) * unit_ >= static_cast<double>(n)) continue;
+      e.current += static_cast<std::int32_t>(unit_ - n);
     }
-    kept.used = survivors.size();
-    if (!survivors.empty())
-      kept.slots.assign(std::max(first_slots, std::bit_ceil(survivors.size() * 4 / 3 + 2)),
-                        Entry{free_slot, 0, 0, 0});
-    for (const Entry& e : survivors) slot(kept, e.id) = e;
-    rows_[i] = std::move(kept);
-    entries += rows_[i].used;
+    survivors.push_back(e);
   }
-  return entries;
+  Row kept;
+  kept.used = survivors.size();
+  if (!survivors.empty())
+    kept.slots.assign(std::max(first_slots, std::bit_ceil(survivors.size() * 4 / 3 + 2)),
+                      Entry{free_slot, 0, 0, 0});
+  for (const Entry& e : survivors) slot(kept, e.id) = e;
+  rows_[i] = std::move(kept);
+  return survivors.size();
 }
 
 const PairCounts::Entry* PairCounts::mirrored(std::size_t i, std::int32_t j) const {
@@ -131,9 +143,8 @@ const PairCounts::Entry* PairCounts::mirrored(std::size_t i, std::int32_t j) con
 /// that its mirror image has gathered.
 void PairCounts::update_spreads() {
   const double before = replicates_;
-  const auto rows = static_cast<std::int64_t>(rows_.size());
-#pragma omp parallel for schedule(dynamic, 64)
-  for (std::int64_t i = 0; i < rows; ++i)
+#pragma omp for schedule(dynamic, 64)
+  for (std::size_t i = 0; i < rows_.size(); ++i)
     for (Entry& e : rows_[i].slots) {
       if (e.id == free_slot) continue;
       const Entry* m = mirrored(i, e.id);
@@ -142,8 +153,8 @@ void PairCounts::update_spreads() {
       const double deviation = before > 0 ? current - total / before : 0;
       e.spread += static_cast<float>(deviation * deviation * before / (before + 1));
     }
-#pragma omp parallel for schedule(dynamic, 64)
-  for (std::int64_t i = 0; i < rows; ++i)
+#pragma omp for schedule(dynamic, 64)
+  for (std::size_t i = 0; i < rows_.size(); ++i)
     for (Entry& e : rows_[i].slots) {
       if (e.id == free_slot || e.total > 0) continue;
       const Entry* m = mirrored(i, e.id);
@@ -153,11 +164,11 @@ void PairCounts::update_spreads() {
 
 void PairCounts::end_replicate() {
   update_spreads();
-  ++replicates_;
-  const auto rows = static_cast<std::int64_t>(rows_.size());
-#pragma omp parallel for schedule(static)
-  for (std::int64_t i = 0; i < rows; ++i)
+#pragma omp for schedule(static)
+  for (std::size_t i = 0; i < rows_.size(); ++i)
     for (Entry& e : rows_[i].slots) e.total += static_cast<std::uint32_t>(std::exchange(e.current, 0));
+#pragma omp single
+  ++replicates_;
 }
 
 namespace {

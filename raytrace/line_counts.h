@@ -52,9 +52,9 @@ class PairCounts {
     std::vector<std::int32_t> multiplicity_, distinct_;  // of the row being flushed
   };
 
-  /// Call between parallel regions, after every buffer was flushed. Thins when there are too many pairs:
-  /// those with n < unit counts stay with probability n / unit and then count as unit; which is drawn from
-  /// (seed, i, j, unit).
+  /// To be called by every thread of a team, after a barrier behind the last flush; so is end_replicate.
+  /// Thins when there are too many pairs: those with n < unit counts stay with probability n / unit and then
+  /// count as unit; which is drawn from (seed, i, j, unit).
   void keep_within_limit(std::uint64_t seed);
   /// Ends one independent randomisation.
   void end_replicate();
@@ -83,11 +83,11 @@ class PairCounts {
   const Entry* mirrored(std::size_t i, std::int32_t j) const;
   void update_spreads();
   static void grow(Row& row);
-  std::size_t thin(int unit, std::uint64_t seed);
+  std::size_t thin(std::size_t row, std::uint64_t seed);  ///< returns what is left
 
   std::vector<Row> rows_;
   std::unique_ptr<Lock[]> locks_;
-  std::size_t max_entries_;
+  std::size_t max_entries_, entries_ = 0;
   int replicates_ = 0, unit_ = 1;
 };
 

@@ -76,15 +76,14 @@ Sweep sweep(const LineScene& scene, const LineOptions& options, int directions) 
         }
         buffer.flush();
 #pragma omp barrier
-#pragma omp single
         counts.keep_within_limit(options.seed);
       }
 #pragma omp single
       {
         pass.aim(line_frame(options.seed, replicate, 0, directions));
         chords += chord_sums(pass);
-        counts.end_replicate();
       }
+      counts.end_replicate();
     }
     leaked += pass.leaked();
   }

@@ -14,6 +14,7 @@ namespace granrad {
 
 namespace {
 
+constexpr double lines_on_a_face = 4096;
 constexpr double max_cells = 67108864;  // 2^26 lines of 4 bytes: 256 MiB per thread
 /// Corners closer than this share of the enclosure's size are one corner; planarity and convexity are judged
 /// by it.
@@ -30,6 +31,7 @@ struct Bounds {
   Vec3 middle() const { return low.x > high.x ? Vec3{} : 0.5 * (low + high); }
   double diameter() const { return low.x > high.x ? 0 : norm(high - low); }
   std::vector<Vec3> corners() const {
+    if (low.x > high.x) return {Vec3{}};
     std::vector<Vec3> all;
     for (int k = 0; k < 8; ++k)
       all.push_back({k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z});
@@ -107,6 +109,52 @@ std::vector<std::string> convexity_problems(const Enclosure& e, const std::vecto
   return problems;
 }
 
+std::vector<LineScene::Face> faces_about(const Enclosure& e, const Vec3& middle, double tolerance) {
+  std::vector<LineScene::Face> faces;
+  for (std::size_t w = 0; w < e.walls.size(); ++w) {
+    LineScene::Face face{e.walls[w].vertices, polygon_normal(e.walls[w]),
+                         static_cast<std::int32_t>(e.sphere_count() + w)};
+    for (Vec3& p : face.corners) p -= middle;
+    faces.push_back(std::move(face));
+  }
+  weld(faces, tolerance);
+  return faces;
+}
+
+/// Largest distance by which a sphere pokes through a wall; collects the centres that stand behind one.
+double protrusion(const LineScene& scene, const Enclosure& e, std::vector<std::string>& problems) {
+  constexpr std::size_t enough = 20;
+  double largest = 0;
+  for (std::size_t i = 0; i < scene.x.size(); ++i)
+    for (const auto& face : scene.faces) {
+      const double distance = dot(Vec3{scene.x[i], scene.y[i], scene.z[i]} - face.corners[0], face.normal);
+      largest = std::max(largest, scene.radius[i] - distance);
+      if (distance < 0 && problems.size() < enough)
+        problems.push_back(
+            fmt::format("lines: particle {} at ({}, {}, {}) stands {} m behind wall {} (no line inside the "
+                        "walls meets it) try "
+                        "another region",
+                        i, e.centre_m[i].x, e.centre_m[i].y, e.centre_m[i].z, -distance,
+                        e.walls[static_cast<std::size_t>(face.surface) - scene.x.size()].name));
+    }
+  return largest;
+}
+
+double line_spacing(const Enclosure& e, double lines_per_disc, double diameter) {
+  double spacing = 1;
+  if (e.sphere_count() > 0) {
+    std::vector<double> sorted = e.radius_m;
+    const auto tenth = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 10);
+    std::nth_element(sorted.begin(), tenth, sorted.end());
+    spacing = *tenth * std::sqrt(pi / lines_per_disc);
+  } else if (!e.walls.empty()) {
+    double sum = 0;
+    for (const Wall& wall : e.walls) sum += area(wall);
+    spacing = std::sqrt(sum / static_cast<double>(e.walls.size()) / lines_on_a_face);
+  }
+  return std::max(spacing, diameter / std::sqrt(max_cells));
+}
+
 }  // namespace
 
 LineSpheres LineScene::spheres() const {
@@ -117,8 +165,6 @@ LineSpheres LineScene::spheres() const {
 LineScene::LineScene(const Enclosure& enclosure, double lines_per_disc)
     : radius(enclosure.radius_m), open_surface(static_cast<std::int32_t>(enclosure.open_surface())) {
   auto problems = shape_problems(enclosure);
-  if (!(lines_per_disc > 0))
-    problems.push_back(fmt::format("lines: lines_per_disc = {} (must be > 0)", lines_per_disc));
   if (!problems.empty()) throw InputError(problems);
 
   Bounds all;
@@ -126,52 +172,21 @@ LineScene::LineScene(const Enclosure& enclosure, double lines_per_disc)
     for (const Vec3& p : wall.vertices) all.include(p);
   for (std::size_t i = 0; i < radius.size(); ++i) all.include(enclosure.centre_m[i], radius[i]);
   const Vec3 middle = all.middle();
+  for (const Vec3& c : enclosure.centre_m)
+    x.push_back(c.x - middle.x), y.push_back(c.y - middle.y), z.push_back(c.z - middle.z);
+
   const double tolerance = corner_tolerance * all.diameter();
-
-  for (std::size_t w = 0; w < enclosure.walls.size(); ++w) {
-    Face face{enclosure.walls[w].vertices, polygon_normal(enclosure.walls[w]),
-              static_cast<std::int32_t>(radius.size() + w)};
-    for (Vec3& p : face.corners) p -= middle;
-    faces.push_back(std::move(face));
-  }
-  weld(faces, tolerance);
-  problems = convexity_problems(enclosure, faces, tolerance);
+  faces = faces_about(enclosure, middle, tolerance);
   closed = edges_close(faces);
-
-  double protrusion = 0;
-  for (std::size_t i = 0; i < radius.size(); ++i) {
-    const Vec3 p = enclosure.centre_m[i] - middle;
-    x.push_back(p.x), y.push_back(p.y), z.push_back(p.z);
-    for (const Face& face : faces) {
-      const double distance = dot(p - face.corners[0], face.normal);
-      protrusion = std::max(protrusion, radius[i] - distance);
-      if (distance < 0 && problems.size() < 20)
-        problems.push_back(
-            fmt::format("lines: particle {} at ({}, {}, {}) stands {} m behind wall {} try another "
-                        "region, or embree",
-                        i, enclosure.centre_m[i].x, enclosure.centre_m[i].y, enclosure.centre_m[i].z,
-                        -distance, enclosure.walls[face.surface - radius.size()].name));
-    }
-  }
+  problems = convexity_problems(enclosure, faces, tolerance);
+  const bool walls_hold_all = protrusion(*this, enclosure, problems) <= 0 && closed;
   if (!problems.empty()) throw InputError(problems);
 
-  const bool walls_hold_all = closed && protrusion <= 0;
   if (walls_hold_all)
     for (const Face& face : faces) hull.insert(hull.end(), face.corners.begin(), face.corners.end());
   else
     for (const Vec3& p : all.corners()) hull.push_back(p - middle);
-
-  if (radius.empty()) {
-    double area_sum = 0;
-    for (const Wall& wall : enclosure.walls) area_sum += area(wall);
-    spacing = faces.empty() ? 1 : std::sqrt(area_sum / faces.size() / 4096);
-  } else {
-    std::vector<double> sorted = radius;
-    const auto tenth = sorted.begin() + sorted.size() / 10;
-    std::nth_element(sorted.begin(), tenth, sorted.end());
-    spacing = *tenth * std::sqrt(pi / lines_per_disc);
-  }
-  spacing = std::max(spacing, all.diameter() / std::sqrt(max_cells));
+  spacing = line_spacing(enclosure, lines_per_disc, all.diameter());
   for (double r : radius) reach.push_back(static_cast<float>(r / spacing));
 }
 

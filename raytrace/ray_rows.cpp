@@ -57,6 +57,7 @@ class VarianceTable {
       group = {};
     }
     factor.resize(std::max(begin, std::size_t{1}), 1);
+    while (factor.size() > 1 && factor[factor.size() - 1] == factor[factor.size() - 2]) factor.pop_back();
     return factor;
   }
 

@@ -1,1 +1,13 @@
 # tests of cli: granrad_test(shelf/name libraries...)
+function(granrad_cli_test name)
+  granrad_test(cli/${name} ${ARGN})
+  target_include_directories(test_cli_${name} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/cli)
+  target_compile_definitions(test_cli_${name} PRIVATE GRANRAD_BIN_DIR="${CMAKE_BINARY_DIR}/bin")
+  add_dependencies(test_cli_${name} granrun)
+endfunction()
+
+granrad_cli_test(granrun_usage granrad_flags)
+granrad_cli_test(granrun_bad_input granrad_flags)
+granrad_cli_test(granrun_run granrad_run)
+granrad_cli_test(granrun_study granrad_run)
+granrad_cli_test(granrun_scenes granrad_flags)

@@ -7,7 +7,8 @@
 namespace granrad {
 
 /// Enclosures made by hand for tests.
-inline Enclosure spheres_in_open_space(const std::vector<Vec3>& centre_m, const std::vector<double>& radius_m) {
+inline Enclosure spheres_in_open_space(const std::vector<Vec3>& centre_m,
+                                       const std::vector<double>& radius_m) {
   Enclosure e;
   e.centre_m = centre_m;
   e.radius_m = radius_m;
@@ -25,7 +26,9 @@ inline Enclosure boxed(Enclosure e, const Box& box) {
 }
 
 /// The channel of the paper, 10 x 4 x 50 mm.
-inline Box channel() { return {{0, 0, 0}, {0.010, 0.004, 0.050}}; }
+inline Box channel() {
+  return {{0, 0, 0}, {0.010, 0.004, 0.050}};
+}
 
 /// hits of (i, j); 0 where the pair is not in the pattern.
 inline double hits(const HitCounts& counts, std::size_t i, std::size_t j) {
@@ -54,7 +57,8 @@ inline double value(const ExchangeAreas& x, std::size_t i, std::size_t j) {
 
 inline double row_sum(const ExchangeAreas& x, std::size_t i) {
   double sum = 0;
-  for (auto k = x.pattern.row_begin[i]; k < x.pattern.row_begin[i + 1]; ++k) sum += x.value[static_cast<std::size_t>(k)];
+  for (auto k = x.pattern.row_begin[i]; k < x.pattern.row_begin[i + 1]; ++k)
+    sum += x.value[static_cast<std::size_t>(k)];
   return sum;
 }
 

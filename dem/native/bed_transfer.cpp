@@ -124,9 +124,9 @@ std::vector<Memory> BedTransfer::memories(const Bed& bed) {
   return all;
 }
 
-void BedTransfer::store(const Rows& rows, std::vector<Memory> memories, Bed& bed) {
+void BedTransfer::store(const Rows& rows, const std::vector<Memory>& memories, int threads, Bed& bed) {
   std::int64_t broken = -1;
-#pragma omp parallel for schedule(static) reduction(max : broken)
+#pragma omp parallel for num_threads(threads) schedule(static) reduction(max : broken)
   for (std::int64_t i = 0; i < rows.count; ++i) {
     const auto b = rows.bed_index[i];
     bed.position_m[b] = rows.position_of(i);

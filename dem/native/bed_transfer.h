@@ -17,7 +17,7 @@ class BedTransfer {
   /// The memories of the Bed by index, after a load that reported `memory` or `particles`.
   static std::vector<Memory> memories(const Bed& bed);
   /// Writes positions, velocities and memories back. Throws NumericalError for a value that is not a number.
-  void store(const Rows& rows, std::vector<Memory> memories, Bed& bed);
+  void store(const Rows& rows, const std::vector<Memory>& memories, int threads, Bed& bed);
   const std::vector<Material>& materials() const { return materials_; }
 
  private:

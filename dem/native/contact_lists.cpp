@@ -81,7 +81,7 @@ void ContactLists::set_reaches(Rows& rows, std::int64_t steps) {
 }
 
 void ContactLists::sort_rows(Rows& rows, const Periods& periods, const Bed& bed, double cell_m) {
-  const auto order = grid_.sort(rows, periods, bed.box, cell_m);
+  const auto order = grid_.sort(rows, periods, bed.box, cell_m, static_cast<int>(shares_.size()));
   const auto permute = [&](auto& column, int width) {
     auto sorted = column;
 #pragma omp parallel for num_threads(static_cast<int>(shares_.size())) schedule(static)
@@ -164,13 +164,13 @@ void ContactLists::find_near(const Rows& rows, const Model& model, const Periods
   }
 }
 
-void ContactLists::find_walls(const Rows& rows, const WallSurface& surface) {
+void ContactLists::find_walls(const Rows& rows, const Periods& periods, const WallSurface& surface) {
   wall_origin_.resize(3 * rows.count);
   const Vec3 moved = drift();
 #pragma omp parallel num_threads(static_cast<int>(shares_.size()))
   {
     Share& share = shares_[omp_get_thread_num()];
-    share.walls.find_near(surface, grid_, rows, share.range, half_skin_m_, moved, half_skin_m_);
+    share.walls.find_near(surface, grid_, rows, periods, share.range, half_skin_m_, moved, half_skin_m_);
     for (auto i = share.range.begin; i < share.range.end; ++i)
       for (int a = 0; a < 3; ++a) wall_origin_[3 * i + a] = rows.position[4 * i + a];
   }
@@ -218,7 +218,7 @@ std::int64_t ContactLists::prepare(Rows& rows, Model& model, const Periods& peri
     stale_ = false, walls_stale_ = true;
   }
   if (walls_stale_ || motion.wall_need > half_skin_m_) {
-    find_walls(rows, surface);
+    find_walls(rows, periods, surface);
     walls_stale_ = false;
   }
   while (steps > 1) {  // a fast particle shortens the life of the list
@@ -238,7 +238,7 @@ std::int64_t ContactLists::prepare(Rows& rows, Model& model, const Periods& peri
       list->refresh(kernels_, rows.view(), model.constants, memory_table_);
       if (varied) list->fill_coefficients(rows, bed.materials);
     }
-    share.walls.refresh(surface, rows, bed.materials, mean_reach, static_cast<std::int32_t>(rows.count + 2 * t));
+    share.walls.refresh(surface, rows, periods, bed.materials, mean_reach, static_cast<std::int32_t>(rows.count + 2 * t));
   }
   life_ = promised_ = steps;
   return life_;

@@ -23,7 +23,7 @@ struct Share {
 
 /// How often lists are made anew; results do not depend on it.
 struct ListSchedule {
-  int refresh_every = 10;  ///< steps a tight list is made to live
+  int refresh_every = 16;  ///< steps a tight list is made to live
   int rebuild_every = 0;   ///< 0: near lists when someone has moved through the skin; else also every so many steps
 };
 
@@ -64,7 +64,7 @@ class ContactLists {
   void set_reaches(Rows& rows, std::int64_t steps);
   void sort_rows(Rows& rows, const Periods& periods, const Bed& bed, double cell_m);
   void find_near(const Rows& rows, const Model& model, const Periods& periods);
-  void find_walls(const Rows& rows, const WallSurface& surface);
+  void find_walls(const Rows& rows, const Periods& periods, const WallSurface& surface);
   Vec3 drift() const { return mean_velocity_ * (step_s_ * double(steps_since_sort_)); }
 
   const Kernels& kernels_;

@@ -45,11 +45,12 @@ int Grid::cell_at(int k, double x) const {
   return static_cast<int>(std::clamp(t * inverse_size_[k], 0.0, count_[k] - 1.0));
 }
 
-std::vector<std::int32_t> Grid::sort(const Rows& rows, const Periods& periods, const Box& box, double cell_m) {
+std::vector<std::int32_t> Grid::sort(const Rows& rows, const Periods& periods, const Box& box, double cell_m,
+                                     int threads) {
   fit(rows, periods, box, cell_m);
   const std::int64_t n = rows.count;
   std::vector<std::int32_t> key(n), order(n);
-#pragma omp parallel for schedule(static) if (n > 20000)
+#pragma omp parallel for num_threads(threads) schedule(static)
   for (std::int64_t i = 0; i < n; ++i) {
     int c[3];
     for (int k = 0; k < 3; ++k) c[k] = cell_at(k, rows.position[4 * i + axis_[k]]);

@@ -12,7 +12,7 @@ namespace granrad::native {
 class Grid {
  public:
   /// Order of the rows (row -> old row) that sorts them by cell.
-  std::vector<std::int32_t> sort(const Rows& rows, const Periods& periods, const Box& box, double cell_m);
+  std::vector<std::int32_t> sort(const Rows& rows, const Periods& periods, const Box& box, double cell_m, int threads);
   /// Rows of the neighbouring column segments of the cell of row i that stand behind row i (half of all
   /// neighbours): calls visit(begin, end) for up to five ranges.
   template <class Visit>

@@ -23,7 +23,7 @@ bool same_walls(const std::vector<Wall>& a, const std::vector<Wall>& b) {
 
 /// Threads that find enough work to be worth their barriers.
 int useful_threads(int asked, std::int64_t particles) {
-  constexpr std::int64_t particles_each = 400;
+  constexpr std::int64_t particles_each = 100;
   const int most = asked > 0 ? asked : omp_get_max_threads();
   return static_cast<int>(std::clamp<std::int64_t>(particles / particles_each, 1, most));
 }
@@ -100,7 +100,7 @@ std::int64_t NativeEngine::Impl::run(std::int64_t steps, bool finishes, bool& li
     for (std::int64_t k = 0; k < steps && !stop; ++k) {
       deepest = std::max({deepest, kernels.pair_contacts(view, share.own.view(), model.constants),
                           kernels.pair_contacts_first(view, share.cross.view(), model.constants),
-                          share.walls.add_forces(kernels, *surface, rows, model.constants, transfer.materials())});
+                          share.walls.add_forces(kernels, *surface, rows, *periods, model.constants, transfer.materials())});
 #pragma omp barrier
       share.too_fast = kernels.move(view, share.range.begin, share.range.end, model.move, finishes && k + 1 == steps);
 #pragma omp barrier
@@ -170,7 +170,7 @@ void NativeEngine::advance(Bed& bed, double until_s) {
       e.lists->walls_changed();
     }
   }
-  e.transfer.store(e.rows, e.lists->collect(e.rows), bed);
+  e.transfer.store(e.rows, e.lists->collect(e.rows), static_cast<int>(e.lists->shares().size()), bed);
   bed.step = last;
   bed.time_s = time_at(last);
 }

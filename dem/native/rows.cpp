@@ -1,8 +1,10 @@
 #include "dem/native/rows.h"
 
+#include <cmath>
+
 namespace granrad::native {
 
-Periods::Periods(const Bed& bed) {
+Periods::Periods(const Bed& bed) : origin(bed.box.min) {
   for (int a = 0; a < 3; ++a) {
     if (!bed.periodic[a]) continue;
     length[a] = bed.box.size()[a];
@@ -14,6 +16,11 @@ Periods::Periods(const Bed& bed) {
 Vec3 Periods::nearest(Vec3 d) const {
   for (int a = 0; a < 3; ++a) d[a] -= length[a] * ScalarPack::round(d[a] * inverse[a]);
   return d;
+}
+
+Vec3 Periods::wrapped(Vec3 p) const {
+  for (int a = 0; a < 3; ++a) p[a] -= length[a] * std::floor((p[a] - origin[a]) * inverse[a]);
+  return p;
 }
 
 }  // namespace granrad::native

@@ -37,9 +37,12 @@ struct Memory {
 /// Periods of the box; zero where not periodic.
 struct Periods {
   double length[3]{}, inverse[3]{};
+  Vec3 origin{};
   bool any = false;
   explicit Periods(const Bed& bed);
   Vec3 nearest(Vec3 d) const;
+  /// The image inside the box.
+  Vec3 wrapped(Vec3 p) const;
 };
 
 }  // namespace granrad::native

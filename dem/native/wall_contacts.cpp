@@ -23,6 +23,26 @@ bool repeats(const WallSurface& surface, const Touch& t, const Touch& kept, doub
          surface.adjacent(t.feature, kept.feature);
 }
 
+/// Whether facet f is closer than reach to p or, where p is near a periodic border, to its image across it.
+bool is_close(const WallSurface& surface, const Periods& periods, std::int32_t f, const Vec3& p, double reach) {
+  if (std::abs(surface.height(f, p)) < reach && surface.distance(f, p) < reach) return true;
+  if (!periods.any) return false;
+  Vec3 low, high;
+  for (int a = 0; a < 3; ++a) {
+    const double above = p[a] - periods.origin[a], length = periods.length[a];
+    if (length == 0) continue;
+    if (above < reach) high[a] = length;
+    if (length - above < reach) low[a] = -length;
+  }
+  for (const double x : {low.x, 0.0, high.x})
+    for (const double y : {low.y, 0.0, high.y})
+      for (const double z : {low.z, 0.0, high.z}) {
+        const Vec3 image = p + Vec3{x, y, z};
+        if (!(image == p) && std::abs(surface.height(f, image)) < reach && surface.distance(f, image) < reach) return true;
+      }
+  return false;
+}
+
 std::vector<Touch> distinct_touches(const WallSurface& surface, const std::int32_t* begin, const std::int32_t* end,
                                     const Vec3& p, double radius) {
   std::vector<Touch> all, kept;
@@ -44,8 +64,8 @@ std::vector<Touch> distinct_touches(const WallSurface& surface, const std::int32
 
 }  // namespace
 
-void WallContacts::find_near(const WallSurface& surface, const Grid& grid, const Rows& rows, Range range,
-                             double skin_m, const Vec3& drift, double slack_m) {
+void WallContacts::find_near(const WallSurface& surface, const Grid& grid, const Rows& rows, const Periods& periods,
+                             Range range, double skin_m, const Vec3& drift, double slack_m) {
   near_.clear();
   double largest = 0;
   for (auto i = range.begin; i < range.end; ++i) largest = std::max(largest, rows.radius[i]);
@@ -56,9 +76,9 @@ void WallContacts::find_near(const WallSurface& surface, const Grid& grid, const
     const Box box{surface.bounds(f).min - grow - drift, surface.bounds(f).max + grow - drift};
     grid.ranges_in(box, [&](std::int64_t begin, std::int64_t end) {
       for (auto i = std::max(begin, range.begin); i < std::min(end, range.end); ++i) {
-        const Vec3 p = rows.position_of(i);
+        const Vec3 p = periods.wrapped(rows.position_of(i));
         const double reach = rows.radius[i] + skin_m;
-        if (std::abs(surface.height(f, p)) < reach && surface.distance(f, p) < reach)
+        if (is_close(surface, periods, f, p, reach))
           near_.push_back({static_cast<std::int32_t>(i), f});
       }
     });
@@ -67,9 +87,11 @@ void WallContacts::find_near(const WallSurface& surface, const Grid& grid, const
             [](const Near& a, const Near& b) { return a.row != b.row ? a.row < b.row : a.facet < b.facet; });
 }
 
-bool WallContacts::acts_as_planes(const WallSurface& surface, const Vec3& p, double margin_m,
+bool WallContacts::acts_as_planes(const WallSurface& surface, const Periods& periods, const Vec3& p, double margin_m,
                                   const std::vector<std::int32_t>& facets) const {
   for (const auto f : facets) {
+    for (int a = 0; a < 3; ++a)  // planes know no images
+      if (periods.length[a] > 0 && surface.plane_rows()[8 * f + 4 + a] != 0) return false;
     if (!surface.clear_of_sides(f, p, margin_m)) return false;
     const bool inside = std::any_of(facets.begin(), facets.end(), [&](auto g) {
       return surface.group(g) == surface.group(f) && surface.foot_inside(g, p);
@@ -109,8 +131,8 @@ void WallContacts::finish_planes(const Rows& rows, const std::vector<Material>& 
   }
 }
 
-void WallContacts::refresh(const WallSurface& surface, const Rows& rows, const std::vector<Material>& materials,
-                           double extra_m, std::int32_t idle_row) {
+void WallContacts::refresh(const WallSurface& surface, const Rows& rows, const Periods& periods,
+                           const std::vector<Material>& materials, double extra_m, std::int32_t idle_row) {
   std::vector<WallMemory> kept = restored_ ? std::move(memories_) : collect();
   restored_ = false;
   memories_.clear(), borders_.clear(), border_facets_.clear();
@@ -119,15 +141,14 @@ void WallContacts::refresh(const WallSurface& surface, const Rows& rows, const s
   std::vector<std::int32_t> close;
   for (std::size_t k = 0; k < near_.size();) {
     const auto row = near_[k].row;
-    const Vec3 p = rows.position_of(row);
+    const Vec3 p = periods.wrapped(rows.position_of(row));
     const double reach = rows.position[4 * row + 3] + extra_m, margin = reach - rows.radius[row];
     close.clear();
     for (; k < near_.size() && near_[k].row == row; ++k)
-      if (surface.stands(near_[k].facet) && std::abs(surface.height(near_[k].facet, p)) < reach &&
-          surface.distance(near_[k].facet, p) < reach)
+      if (surface.stands(near_[k].facet) && is_close(surface, periods, near_[k].facet, p, reach))
         close.push_back(near_[k].facet);
     if (close.empty()) continue;
-    if (acts_as_planes(surface, p, margin, close)) {
+    if (acts_as_planes(surface, periods, p, margin, close)) {
       for (const auto f : close)
         if (surface.foot_inside(f, p)) add_plane(row, f, surface.group(f), kept);
       continue;
@@ -142,7 +163,7 @@ void WallContacts::refresh(const WallSurface& surface, const Rows& rows, const s
 }
 
 double WallContacts::add_forces(const Kernels& kernels, const WallSurface& surface, Rows& rows,
-                                const StepConstants& constants, const std::vector<Material>& materials) {
+                                const Periods& periods, const StepConstants& constants, const std::vector<Material>& materials) {
   double deepest = -1;
   if (plane_count_ > 0) {
     const auto padded = static_cast<std::int64_t>(rows_.size());
@@ -151,14 +172,15 @@ double WallContacts::add_forces(const Kernels& kernels, const WallSurface& surfa
                            rows.uniform ? nullptr : varied_.data(), padded};
     deepest = kernels.plane_contacts(rows.view(), view, {surface.plane_rows(), surface.velocity_rows()}, constants);
   }
-  for (auto& border : borders_) deepest = std::max(deepest, border_forces(surface, rows, constants, materials, border));
+  for (auto& border : borders_) deepest = std::max(deepest, border_forces(surface, rows, periods, constants, materials, border));
   return deepest;
 }
 
-double WallContacts::border_forces(const WallSurface& surface, Rows& rows, const StepConstants& constants,
+double WallContacts::border_forces(const WallSurface& surface, Rows& rows, const Periods& periods,
+                                   const StepConstants& constants,
                                    const std::vector<Material>& materials, Border& border) {
   const auto i = border.row;
-  const Vec3 p = rows.position_of(i), v = rows.velocity_of(i), w = rows.spin_of(i);
+  const Vec3 p = periods.wrapped(rows.position_of(i)), v = rows.velocity_of(i), w = rows.spin_of(i);
   const double radius = rows.radius[i];
   const auto touches = distinct_touches(surface, border_facets_.data() + border.facets_begin,
                                         border_facets_.data() + border.facets_end, p, radius);

@@ -19,6 +19,9 @@ struct WallMemory {
 /// The wall contacts of one thread's rows. Most particles meet walls far from edges: there the walls are
 /// planes, worked on in packs. Near edges and corners ("border rows") each step asks the surface for the
 /// local minima of the distance.
+///
+/// In periodic directions a particle meets the walls inside the box, at its image there: walls that reach the
+/// border of the box must go on straight behind it.
 class WallContacts {
  public:
   struct Range {
@@ -26,14 +29,14 @@ class WallContacts {
   };
   /// Facets within `skin_m` of the rows' surfaces. `drift` is how far the rows' mean moved since the grid was
   /// sorted, `slack_m` how far a row may have moved beside it.
-  void find_near(const WallSurface& surface, const Grid& grid, const Rows& rows, Range range, double skin_m,
-                 const Vec3& drift, double slack_m);
+  void find_near(const WallSurface& surface, const Grid& grid, const Rows& rows, const Periods& periods, Range range,
+                 double skin_m, const Vec3& drift, double slack_m);
   /// Chooses those that can touch before the next refresh; `extra_m` is what the mean flow adds to the reach.
-  void refresh(const WallSurface& surface, const Rows& rows, const std::vector<Material>& materials, double extra_m,
-               std::int32_t idle_row);
+  void refresh(const WallSurface& surface, const Rows& rows, const Periods& periods,
+               const std::vector<Material>& materials, double extra_m, std::int32_t idle_row);
   /// Adds the forces; returns the largest `overlap - deepest_overlap x radius`.
-  double add_forces(const Kernels& kernels, const WallSurface& surface, Rows& rows, const StepConstants& constants,
-                    const std::vector<Material>& materials);
+  double add_forces(const Kernels& kernels, const WallSurface& surface, Rows& rows, const Periods& periods,
+                    const StepConstants& constants, const std::vector<Material>& materials);
 
   /// Springs that are not zero, in ascending rows.
   std::vector<WallMemory> collect() const;
@@ -54,12 +57,12 @@ class WallContacts {
     std::size_t facets_begin, facets_end;
     std::vector<Spring> springs;
   };
-  bool acts_as_planes(const WallSurface& surface, const Vec3& p, double margin_m,
+  bool acts_as_planes(const WallSurface& surface, const Periods& periods, const Vec3& p, double margin_m,
                       const std::vector<std::int32_t>& facets) const;
   void add_plane(std::int32_t row, std::int32_t facet, std::int64_t feature, std::vector<WallMemory>& kept);
   void finish_planes(const Rows& rows, const std::vector<Material>& materials, std::int32_t idle_row,
                      std::int32_t idle_plane);
-  double border_forces(const WallSurface& surface, Rows& rows, const StepConstants& constants,
+  double border_forces(const WallSurface& surface, Rows& rows, const Periods& periods, const StepConstants& constants,
                        const std::vector<Material>& materials, Border& border);
 
   std::vector<Near> near_;

@@ -12,8 +12,8 @@ constexpr std::uint64_t buckets_per_point = 16;
 constexpr double cell_margin = 1 + 1e-9;
 }  // namespace
 
-CellGrid::CellGrid(const std::vector<Vec3>& points, std::vector<std::int32_t> members, double cell_m, const Box& box,
-                   const std::array<bool, 3>& periodic)
+CellGrid::CellGrid(const std::vector<Vec3>& points, std::vector<std::int32_t> members, double cell_m,
+                   const Box& box, const std::array<bool, 3>& periodic)
     : periodic_(periodic) {
   Box extent{{}, {}};
   if (!members.empty()) extent = {points[members[0]], points[members[0]]};

@@ -8,9 +8,9 @@
 
 namespace granrad {
 
-/// Points sorted into cubic cells of at least `cell_m`, for "who is near". Memory is O(points) whatever the extent:
-/// cells beyond some per point share a bucket, told apart by their coordinates. Along periodic directions of
-/// `box` the cells wrap and tile the period; points must lie inside it there.
+/// Points sorted into cubic cells of at least `cell_m`, for "who is near". Memory is O(points) whatever the
+/// extent: cells beyond some per point share a bucket, told apart by their coordinates. Along periodic
+/// directions of `box` the cells wrap and tile the period; points must lie inside it there.
 class CellGrid {
  public:
   /// Keeps a copy of the points listed by `members` (indices into `points`).
@@ -20,8 +20,8 @@ class CellGrid {
   /// The members in the order of their cells.
   const std::vector<std::int32_t>& members() const { return member_; }
 
-  /// Calls visit(member, point) for every point in the cell of `p` and the 26 around it, each once: all points
-  /// within cell_m of p (in the nearest periodic image) are among them.
+  /// Calls visit(member, point) for every point in the cell of `p` and the 26 around it, each once: all
+  /// points within cell_m of p (in the nearest periodic image) are among them.
   template <class Visit>
   void visit_around(const Vec3& p, Visit&& visit) const;
   /// Calls visit(member, point) for every point that may lie in the box; no wrapping.
@@ -37,7 +37,8 @@ class CellGrid {
   }
   /// Visits the cells x_first .. x_last of a row; neighbours in x are neighbours in memory.
   template <class Visit>
-  void visit_row(std::int64_t x_first, std::int64_t x_last, std::int64_t y, std::int64_t z, Visit&& visit) const;
+  void visit_row(std::int64_t x_first, std::int64_t x_last, std::int64_t y, std::int64_t z,
+                 Visit&& visit) const;
 
   Vec3 origin_, inverse_size_;
   Cell count_;
@@ -54,7 +55,8 @@ void CellGrid::visit_row(std::int64_t x_first, std::int64_t x_last, std::int64_t
                          Visit&& visit) const {
   if (own_buckets_) {
     const std::int32_t end = bucket_begin_[bucket_of({x_last, y, z}) + 1];
-    for (std::int32_t k = bucket_begin_[bucket_of({x_first, y, z})]; k < end; ++k) visit(member_[k], point_[k]);
+    for (std::int32_t k = bucket_begin_[bucket_of({x_first, y, z})]; k < end; ++k)
+      visit(member_[k], point_[k]);
     return;
   }
   for (Cell cell{x_first, y, z}; cell[0] <= x_last; ++cell[0]) {

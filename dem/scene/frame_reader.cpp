@@ -48,14 +48,17 @@ class FrameReader {
  private:
   void check_format() const {
     if (!in_.has_attribute("/granrad", "format") || in_.text_attribute("/granrad", "format") != frame_format)
-      throw InputError(fmt::format("{}: is not a frame of granrad (no /granrad with format \"{}\")", file_, frame_format));
+      throw InputError(
+          fmt::format("{}: is not a frame of granrad (no /granrad with format \"{}\")", file_, frame_format));
     const auto version = in_.integer_attribute("/granrad", "version");
     if (version != frame_version)
-      throw InputError(fmt::format("{}: frame version {} (this program reads version {}) use the program that wrote it",
-                                   file_, version, frame_version));
+      throw InputError(
+          fmt::format("{}: frame version {} (this program reads version {}) use the program that wrote it",
+                      file_, version, frame_version));
   }
   void sound(bool holds, const std::string& what) const {
-    if (!holds) throw InputError(fmt::format("{}: {} of this frame is inconsistent (damaged file)", file_, what));
+    if (!holds)
+      throw InputError(fmt::format("{}: {} of this frame is inconsistent (damaged file)", file_, what));
   }
 
   void read_particles(Bed& bed) const {
@@ -69,17 +72,17 @@ class FrameReader {
     bed.radiative_heat_W = in_.read<double>(at + "radiative_heat_W");
     bed.material = in_.read<std::int32_t>(at + "material");
     const std::size_t n = bed.size();
-    sound(bed.position_m.size() == n && bed.velocity_m_s.size() == n && bed.angular_velocity_rad_s.size() == n &&
-              bed.radius_m.size() == n && bed.temperature_K.size() == n && bed.radiative_heat_W.size() == n &&
-              bed.material.size() == n,
+    sound(bed.position_m.size() == n && bed.velocity_m_s.size() == n &&
+              bed.angular_velocity_rad_s.size() == n && bed.radius_m.size() == n &&
+              bed.temperature_K.size() == n && bed.radiative_heat_W.size() == n && bed.material.size() == n,
           "the length of a particle column");
     sound(std::adjacent_find(bed.id.begin(), bed.id.end(), std::greater_equal<>()) == bed.id.end() &&
               (n == 0 || (bed.id.front() >= 0 && bed.id.back() < bed.next_id)),
           "the order of particle ids");
     for (std::size_t i = 0; i < n; ++i)
       sound(is_finite(bed.position_m[i]) && is_finite(bed.velocity_m_s[i]) && bed.radius_m[i] > 0 &&
-                std::isfinite(bed.radius_m[i]) && std::isfinite(bed.temperature_K[i]) && bed.material[i] >= 0 &&
-                bed.material[i] < std::max<std::int32_t>(1, bed.materials.size()),
+                std::isfinite(bed.radius_m[i]) && std::isfinite(bed.temperature_K[i]) &&
+                bed.material[i] >= 0 && bed.material[i] < std::max<std::int32_t>(1, bed.materials.size()),
             fmt::format("particle {}", bed.id[i]));
   }
 
@@ -88,11 +91,13 @@ class FrameReader {
     const auto second = in_.read<std::int64_t>("/granrad/contacts/second");
     const auto displacement = read_vectors(in_, "/granrad/contacts/displacement_m");
     sound(second.size() == first.size() && displacement.size() == first.size(), "contact memory");
-    for (std::size_t k = 0; k < first.size(); ++k) bed.contacts.push_back({first[k], second[k], displacement[k]});
+    for (std::size_t k = 0; k < first.size(); ++k)
+      bed.contacts.push_back({first[k], second[k], displacement[k]});
   }
 
   void read_materials(Bed& bed) const {
-    for (auto& name : in_.read_texts("/granrad/materials/name")) bed.materials.emplace_back().name = std::move(name);
+    for (auto& name : in_.read_texts("/granrad/materials/name"))
+      bed.materials.emplace_back().name = std::move(name);
     for (const auto& [property, member] : material_columns()) {
       const auto column = in_.read<double>("/granrad/materials/" + property);
       sound(column.size() == bed.materials.size(), "material " + property);
@@ -103,11 +108,14 @@ class FrameReader {
   void read_walls(Bed& bed) const {
     const std::string at = "/granrad/walls/";
     const auto names = in_.read_texts(at + "name");
-    const auto role = in_.read<std::int32_t>(at + "role"), corners = in_.read<std::int32_t>(at + "triangles", 3);
+    const auto role = in_.read<std::int32_t>(at + "role"),
+               corners = in_.read<std::int32_t>(at + "triangles", 3);
     const auto contact = in_.read<std::uint8_t>(at + "contact");
-    const auto temperature = in_.read<double>(at + "temperature_K"), emissivity = in_.read<double>(at + "emissivity"),
+    const auto temperature = in_.read<double>(at + "temperature_K"),
+               emissivity = in_.read<double>(at + "emissivity"),
                opens_at = in_.read<double>(at + "opens_at_s");
-    const auto velocity = read_vectors(in_, at + "velocity_m_s"), vertices = read_vectors(in_, at + "vertices_m");
+    const auto velocity = read_vectors(in_, at + "velocity_m_s"),
+               vertices = read_vectors(in_, at + "vertices_m");
     const auto vertex_begin = in_.read<std::int64_t>(at + "vertex_begin"),
                triangle_begin = in_.read<std::int64_t>(at + "triangle_begin");
     const std::size_t n = names.size();
@@ -122,7 +130,8 @@ class FrameReader {
     for (std::size_t w = 0; w < n; ++w) {
       Wall wall;
       wall.name = names[w];
-      sound(role[w] >= 0 && role[w] <= static_cast<std::int32_t>(WallRole::excluded), "the role of wall " + names[w]);
+      sound(role[w] >= 0 && role[w] <= static_cast<std::int32_t>(WallRole::excluded),
+            "the role of wall " + names[w]);
       wall.role = static_cast<WallRole>(role[w]);
       wall.contact = contact[w];
       wall.temperature_K = temperature[w];
@@ -133,7 +142,8 @@ class FrameReader {
       for (auto t = triangle_begin[w]; t < triangle_begin[w + 1]; ++t) {
         wall.triangles.push_back({corners[3 * t], corners[3 * t + 1], corners[3 * t + 2]});
         for (const auto corner : wall.triangles.back())
-          sound(corner >= 0 && corner < static_cast<std::int32_t>(wall.vertices.size()), "a triangle of " + names[w]);
+          sound(corner >= 0 && corner < static_cast<std::int32_t>(wall.vertices.size()),
+                "a triangle of " + names[w]);
       }
       bed.walls.push_back(std::move(wall));
     }
@@ -158,6 +168,8 @@ class FrameReader {
 
 }  // namespace
 
-Snapshot read_frame(const std::filesystem::path& file) { return FrameReader(file).read(); }
+Snapshot read_frame(const std::filesystem::path& file) {
+  return FrameReader(file).read();
+}
 
 }  // namespace granrad

@@ -14,7 +14,8 @@ void write_series(const std::filesystem::path& series_file,
   const auto folder = std::filesystem::absolute(series_file).parent_path();
   for (const auto& [file, time_s] : frames)
     series["files"].push_back(
-        {{"name", std::filesystem::absolute(file).lexically_relative(folder).generic_string()}, {"time", time_s}});
+        {{"name", std::filesystem::absolute(file).lexically_relative(folder).generic_string()},
+         {"time", time_s}});
   std::filesystem::path temporary = series_file;
   temporary += ".tmp";
   std::ofstream out(temporary);

@@ -21,13 +21,14 @@ void write_vectors(Hdf5Writer& out, const std::string& name, const std::vector<V
 }
 
 /// Throws NumericalError: what is not finite must not leave the program.
-void check(const std::filesystem::path& file, const Bed& bed, const std::map<std::string, std::vector<double>>& extra) {
+void check(const std::filesystem::path& file, const Bed& bed,
+           const std::map<std::string, std::vector<double>>& extra) {
   for (std::size_t i = 0; i < bed.size(); ++i)
     if (!is_finite(bed.position_m[i]) || !is_finite(bed.velocity_m_s[i]) ||
         !is_finite(bed.angular_velocity_rad_s[i]) || !std::isfinite(bed.temperature_K[i]) ||
         !std::isfinite(bed.radiative_heat_W[i]))
-      throw NumericalError(fmt::format("{}: the state of particle {} is not finite; nothing written", file.string(),
-                                       bed.id[i]));
+      throw NumericalError(fmt::format("{}: the state of particle {} is not finite; nothing written",
+                                       file.string(), bed.id[i]));
   for (const auto& [name, column] : extra)
     if (column.size() != bed.size())
       throw NumericalError(fmt::format("{}: column {} has {} values for {} particles", file.string(), name,
@@ -121,8 +122,10 @@ void write_state(Hdf5Writer& out, const StateBlocks& state) {
   out.group("/granrad/state");
   for (const auto& [block, columns] : state) {
     out.group("/granrad/state/" + block);
-    for (const auto& [name, values] : columns.integers) out.write(fmt::format("/granrad/state/{}/{}", block, name), values);
-    for (const auto& [name, values] : columns.reals) out.write(fmt::format("/granrad/state/{}/{}", block, name), values);
+    for (const auto& [name, values] : columns.integers)
+      out.write(fmt::format("/granrad/state/{}/{}", block, name), values);
+    for (const auto& [name, values] : columns.reals)
+      out.write(fmt::format("/granrad/state/{}/{}", block, name), values);
   }
 }
 
@@ -146,8 +149,7 @@ void write_frame(const std::filesystem::path& file, const Bed& bed, const StateB
   write_materials(out, bed.materials);
   write_walls(out, bed.walls);
   write_vectors(out, "/granrad/box", {bed.box.min, bed.box.max});
-  out.write("/granrad/periodic",
-            std::vector<std::uint8_t>(bed.periodic.begin(), bed.periodic.end()));
+  out.write("/granrad/periodic", std::vector<std::uint8_t>(bed.periodic.begin(), bed.periodic.end()));
   write_state(out, state);
   out.commit();
 }

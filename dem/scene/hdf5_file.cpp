@@ -37,7 +37,9 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+void silence_hdf5() {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 template <class T>
 hid_t native_type() {
@@ -81,7 +83,8 @@ struct Hdf5Writer::Impl {
   void require(bool done, const std::string& what) const {
     if (!done) fail(what);
   }
-  void attribute(const std::string& object, const std::string& name, hid_t type, hid_t space, const void* value) {
+  void attribute(const std::string& object, const std::string& name, hid_t type, hid_t space,
+                 const void* value) {
     const Handle owner(H5Oopen(file, object.c_str(), H5P_DEFAULT), H5Oclose);
     const Handle made(H5Acreate2(owner, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     require(made.valid() && H5Awrite(made, type, value) >= 0, name);
@@ -134,22 +137,26 @@ template void Hdf5Writer::write(const std::string&, const std::uint8_t*, std::si
 
 void Hdf5Writer::write(const std::string& name, const std::vector<std::string>& texts) {
   const hsize_t rows = texts.size();
-  const Handle space(H5Screate_simple(1, &rows, nullptr), H5Sclose), type = text_type(), links = intermediate_groups();
-  const Handle set(H5Dcreate2(impl_->file, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  const Handle space(H5Screate_simple(1, &rows, nullptr), H5Sclose), type = text_type(),
+                                                                     links = intermediate_groups();
+  const Handle set(H5Dcreate2(impl_->file, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT),
+                   H5Dclose);
   impl_->require(set.valid(), name);
   std::vector<const char*> pointers;
   for (const auto& text : texts) pointers.push_back(text.c_str());
-  if (rows > 0) impl_->require(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()) >= 0, name);
+  if (rows > 0)
+    impl_->require(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()) >= 0, name);
 }
 
 void Hdf5Writer::group(const std::string& name) {
-  const Handle made(H5Gcreate2(impl_->file, name.c_str(), intermediate_groups(), H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+  const Handle made(H5Gcreate2(impl_->file, name.c_str(), intermediate_groups(), H5P_DEFAULT, H5P_DEFAULT),
+                    H5Gclose);
   impl_->require(made.valid(), name);
 }
 
 void Hdf5Writer::link(const std::string& existing, const std::string& name) {
-  impl_->require(H5Lcreate_hard(impl_->file, existing.c_str(), impl_->file, name.c_str(), intermediate_groups(),
-                                H5P_DEFAULT) >= 0,
+  impl_->require(H5Lcreate_hard(impl_->file, existing.c_str(), impl_->file, name.c_str(),
+                                intermediate_groups(), H5P_DEFAULT) >= 0,
                  name);
 }
 
@@ -190,7 +197,8 @@ struct Hdf5Reader::Impl {
   Handle file;
 
   [[noreturn]] void damaged(const std::string& what) const {
-    throw IoError(fmt::format("{}: {} cannot be read (the file is damaged or truncated)", name.string(), what));
+    throw IoError(
+        fmt::format("{}: {} cannot be read (the file is damaged or truncated)", name.string(), what));
   }
   [[noreturn]] void unexpected(const std::string& what) const {
     throw InputError(fmt::format("{}: {}", name.string(), what));
@@ -205,18 +213,21 @@ struct Hdf5Reader::Impl {
     const Handle space(H5Dget_space(set), H5Sclose);
     hsize_t shape[2] = {0, 1};
     const int rank = H5Sget_simple_extent_ndims(space);
-    if (rank != (columns > 1 ? 2 : 1) || H5Sget_simple_extent_dims(space, shape, nullptr) < 0 || shape[1] != columns)
+    if (rank != (columns > 1 ? 2 : 1) || H5Sget_simple_extent_dims(space, shape, nullptr) < 0 ||
+        shape[1] != columns)
       unexpected(fmt::format("dataset {} must have the shape [rows{}]", path,
                              columns > 1 ? fmt::format(", {}", columns) : ""));
     if (shape[0] > largest_dataset_bytes / (8 * columns)) damaged(path);
     return shape[0];
   }
   Handle attribute(const std::string& object, const std::string& attribute_name) const {
-    Handle found(H5Aopen_by_name(file, object.c_str(), attribute_name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    Handle found(H5Aopen_by_name(file, object.c_str(), attribute_name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                 H5Aclose);
     if (!found.valid()) unexpected(fmt::format("{} has no attribute {}", object, attribute_name));
     return found;
   }
-  void scalar_attribute(const std::string& object, const std::string& attribute_name, hid_t type, void* value) const {
+  void scalar_attribute(const std::string& object, const std::string& attribute_name, hid_t type,
+                        void* value) const {
     const Handle found = attribute(object, attribute_name);
     const Handle space(H5Aget_space(found), H5Sclose);
     if (H5Sget_simple_extent_npoints(space) != 1)
@@ -229,7 +240,8 @@ Hdf5Reader::Hdf5Reader(fs::path name) {
   silence_hdf5();
   if (!fs::is_regular_file(name)) throw IoError(fmt::format("{}: there is no such file", name.string()));
   Handle file(H5Fopen(name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  if (!file.valid()) throw IoError(fmt::format("{}: is not an HDF5 file, or is damaged or truncated", name.string()));
+  if (!file.valid())
+    throw IoError(fmt::format("{}: is not an HDF5 file, or is damaged or truncated", name.string()));
   impl_.reset(new Impl{std::move(name), std::move(file)});
 }
 

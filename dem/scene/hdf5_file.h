@@ -7,9 +7,10 @@
 
 namespace granrad {
 
-/// Writes one HDF5 file: to `FILE.tmp` first, and under its name only by `commit`, after fsync; the file is whole
-/// or not there. Datasets carry checksums (Fletcher32), integers are compressed. Every failure is an IoError.
-/// T is double, std::int64_t, std::int32_t or std::uint8_t. The user of the HDF5 library beside its reader.
+/// Writes one HDF5 file: to `FILE.tmp` first, and under its name only by `commit`, after fsync; the file is
+/// whole or not there. Datasets carry checksums (Fletcher32), integers are compressed. Every failure is an
+/// IoError. T is double, std::int64_t, std::int32_t or std::uint8_t. The user of the HDF5 library beside its
+/// reader.
 class Hdf5Writer {
  public:
   explicit Hdf5Writer(std::filesystem::path file);
@@ -40,8 +41,8 @@ class Hdf5Writer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Reads an HDF5 file. IoError when it cannot be opened or read (truncated, checksum), InputError when something
-/// asked for is not there or has another shape.
+/// Reads an HDF5 file. IoError when it cannot be opened or read (truncated, checksum), InputError when
+/// something asked for is not there or has another shape.
 class Hdf5Reader {
  public:
   explicit Hdf5Reader(std::filesystem::path file);

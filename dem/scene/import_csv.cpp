@@ -16,7 +16,8 @@ Snapshot import_csv(const std::filesystem::path& file, double radius_m) {
       if (!line.empty() && line.front() != '#') return true;
     return false;
   };
-  if (!next_row()) throw InputError(fmt::format("{}: is empty; its first line must be x,y,z,radius", file.string()));
+  if (!next_row())
+    throw InputError(fmt::format("{}: is empty; its first line must be x,y,z,radius", file.string()));
   std::vector<std::string_view> fields;
   split_at(',', line, fields);
   ParticleTable table(file.string(), lines.line_number(), {fields.begin(), fields.end()}, radius_m);

@@ -26,7 +26,8 @@ class DumpReader {
     std::string_view line;
     while (lines_.next(line)) {
       if (line.empty()) continue;
-      if (!line.starts_with(item)) fail(fmt::format("\"{}\" (expected a line that starts with \"ITEM: \")", line));
+      if (!line.starts_with(item))
+        fail(fmt::format("\"{}\" (expected a line that starts with \"ITEM: \")", line));
       line.remove_prefix(item.size());
       if (line == "TIMESTEP")
         step_ = static_cast<std::int64_t>(number_line("the step"));
@@ -57,7 +58,8 @@ class DumpReader {
     std::string_view line;
     double value = 0;
     if (!lines_.next(line)) fail(fmt::format("the file ends before {}", what));
-    if (!parse(line, value) || value < 0) fail(fmt::format("{} = \"{}\" (must be a number >= 0)", what, line));
+    if (!parse(line, value) || value < 0)
+      fail(fmt::format("{} = \"{}\" (must be a number >= 0)", what, line));
     return value;
   }
 
@@ -119,6 +121,8 @@ class DumpReader {
 
 }  // namespace
 
-Snapshot import_dump(const std::filesystem::path& file, double radius_m) { return DumpReader(file, radius_m).read(); }
+Snapshot import_dump(const std::filesystem::path& file, double radius_m) {
+  return DumpReader(file, radius_m).read();
+}
 
 }  // namespace granrad

@@ -21,14 +21,16 @@ Wall merged(const aiMesh& mesh, double scale) {
   Wall wall;
   std::map<std::tuple<float, float, float>, std::int32_t> known;
   const auto index_of = [&](const aiVector3D& v) {
-    const auto [at, is_new] = known.emplace(std::tuple(v.x, v.y, v.z), static_cast<std::int32_t>(known.size()));
+    const auto [at, is_new] =
+        known.emplace(std::tuple(v.x, v.y, v.z), static_cast<std::int32_t>(known.size()));
     if (is_new) wall.vertices.push_back(scale * Vec3{v.x, v.y, v.z});
     return at->second;
   };
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
     const aiFace& face = mesh.mFaces[f];
     if (face.mNumIndices != 3) continue;
-    wall.triangles.push_back({index_of(mesh.mVertices[face.mIndices[0]]), index_of(mesh.mVertices[face.mIndices[1]]),
+    wall.triangles.push_back({index_of(mesh.mVertices[face.mIndices[0]]),
+                              index_of(mesh.mVertices[face.mIndices[1]]),
                               index_of(mesh.mVertices[face.mIndices[2]])});
   }
   return wall;
@@ -48,9 +50,10 @@ void check(const Wall& wall, const std::string& file) {
     if (norm(twice_area) <= no_area * size_squared && bad++ == 0) first = t + 1;
   }
   if (bad > 0)
-    throw InputError(fmt::format("{}: {} of {} triangles have no area, first number {} (their normal is undefined); "
-                                 "remove them in the program that wrote the file",
-                                 file, bad, wall.triangles.size(), first));
+    throw InputError(
+        fmt::format("{}: {} of {} triangles have no area, first number {} (their normal is undefined); "
+                    "remove them in the program that wrote the file",
+                    file, bad, wall.triangles.size(), first));
 }
 
 /// Names of the meshes: those of the nodes that hold them.
@@ -82,7 +85,9 @@ std::vector<Wall> import_stl(const std::filesystem::path& file, double scale, co
     check(wall, file.string());
     const auto solid = names.find(m);
     const bool named = solid != names.end() && !solid->second.empty();
-    wall.name = scene->mNumMeshes == 1 ? name : fmt::format("{}.{}", name, named ? solid->second : fmt::format("{}", m + 1));
+    wall.name = scene->mNumMeshes == 1
+                    ? name
+                    : fmt::format("{}.{}", name, named ? solid->second : fmt::format("{}", m + 1));
     walls.push_back(std::move(wall));
   }
   if (walls.empty()) throw InputError(fmt::format("{}: has no triangles", file.string()));

@@ -13,7 +13,8 @@ namespace granrad {
 namespace {
 
 constexpr std::size_t examples_shown = 10;
-/// Larger overlaps would explode; resting beds have 1e-3 of the radius and less, softened ones up to a few 1e-2.
+/// Larger overlaps would explode; resting beds have 1e-3 of the radius and less, softened ones up to a few
+/// 1e-2.
 constexpr double largest_overlap = 0.1;
 
 bool same_geometry(const std::vector<Wall>& a, const std::vector<Wall>& b) {
@@ -23,21 +24,23 @@ bool same_geometry(const std::vector<Wall>& a, const std::vector<Wall>& b) {
 }
 
 /// Material numbers of the file become those of the scene, by name.
-void translate_materials(Bed& particles, const std::vector<Material>& scene_materials, const std::string& file) {
+void translate_materials(Bed& particles, const std::vector<Material>& scene_materials,
+                         const std::string& file) {
   std::vector<std::int32_t> number(particles.materials.size());
   for (std::size_t m = 0; m < number.size(); ++m) {
     const auto same = [&](const Material& s) { return s.name == particles.materials[m].name; };
     const auto at = std::find_if(scene_materials.begin(), scene_materials.end(), same);
     if (at == scene_materials.end() && scene_materials.size() > 1)
-      throw InputError(fmt::format("{}: material \"{}\" (not in the scene) add [[materials]] with this name", file,
-                                   particles.materials[m].name));
+      throw InputError(fmt::format("{}: material \"{}\" (not in the scene) add [[materials]] with this name",
+                                   file, particles.materials[m].name));
     number[m] = at == scene_materials.end() ? 0 : static_cast<std::int32_t>(at - scene_materials.begin());
   }
   for (auto& material : particles.material) {
     if (!number.empty()) material = number.at(material);
     if (material < 0 || material >= static_cast<std::int32_t>(scene_materials.size()))
-      throw InputError(fmt::format("{}: a particle is of material number {} (the scene has {}) add [[materials]]", file,
-                                   material, scene_materials.size()));
+      throw InputError(
+          fmt::format("{}: a particle is of material number {} (the scene has {}) add [[materials]]", file,
+                      material, scene_materials.size()));
   }
 }
 
@@ -53,10 +56,11 @@ void refuse_particles_behind_walls(const Scene& scene, const Bed& bed) {
     if (count++ < examples_shown) outside.push_back(bed.id[i]);
   }
   if (count > 0)
-    throw InputError(fmt::format("{}: {} particles lie outside the walls of the box, ids {}{} (their centres are behind "
-                                 "a wall) enlarge [box], or remove them from the file",
-                                 scene.particle_file.string(), count, fmt::join(outside, ", "),
-                                 count > examples_shown ? ", ..." : ""));
+    throw InputError(
+        fmt::format("{}: {} particles lie outside the walls of the box, ids {}{} (their centres are behind "
+                    "a wall) enlarge [box], or remove them from the file",
+                    scene.particle_file.string(), count, fmt::join(outside, ", "),
+                    count > examples_shown ? ", ..." : ""));
 }
 
 void refuse_deep_overlaps(const Scene& scene, const Bed& bed) {
@@ -74,14 +78,15 @@ void refuse_deep_overlaps(const Scene& scene, const Bed& bed) {
   for (const auto i : all)
     grid.visit_around(points[i], [&](std::int32_t j, const Vec3& at) {
       const double ri = bed.radius_m[i], rj = bed.radius_m[j];
-      if (j <= i || norm(nearest_image(bed, at - points[i])) >= ri + rj - largest_overlap * std::min(ri, rj)) return;
+      if (j <= i || norm(nearest_image(bed, at - points[i])) >= ri + rj - largest_overlap * std::min(ri, rj))
+        return;
       if (count++ < examples_shown) pairs.push_back(fmt::format("{}-{}", bed.id[i], bed.id[j]));
     });
   if (count > 0)
-    throw InputError(fmt::format("{}: {} pairs overlap by more than a tenth of a radius, ids {}{} (the contact law "
-                                 "would throw them apart) check the radius and the unit of length",
-                                 scene.particle_file.string(), count, fmt::join(pairs, ", "),
-                                 count > examples_shown ? ", ..." : ""));
+    throw InputError(fmt::format(
+        "{}: {} pairs overlap by more than a tenth of a radius, ids {}{} (the contact law "
+        "would throw them apart) check the radius and the unit of length",
+        scene.particle_file.string(), count, fmt::join(pairs, ", "), count > examples_shown ? ", ..." : ""));
 }
 
 void take_particles(const Scene& scene, Bed& bed) {

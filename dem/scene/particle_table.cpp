@@ -29,19 +29,30 @@ std::vector<T> permuted(const std::vector<T>& values, const std::vector<std::siz
 ParticleTable::ParticleTable(std::string file, std::size_t header_line, std::vector<std::string> columns,
                              double radius_m)
     : file_(std::move(file)), names_(std::move(columns)), radius_m_(radius_m) {
-  const std::vector<const char*> names[count] = {
-      {"id"}, {"x", "xu"}, {"y", "yu"}, {"z", "zu"}, {"radius"}, {"diameter"},
-      {"temperature", "T", "Temp", "f_Temp[0]", "f_Temp"}, {"vx"}, {"vy"}, {"vz"},
-      {"omegax"}, {"omegay"}, {"omegaz"}, {"material"}};
+  const std::vector<const char*> names[count] = {{"id"},
+                                                 {"x", "xu"},
+                                                 {"y", "yu"},
+                                                 {"z", "zu"},
+                                                 {"radius"},
+                                                 {"diameter"},
+                                                 {"temperature", "T", "Temp", "f_Temp[0]", "f_Temp"},
+                                                 {"vx"},
+                                                 {"vy"},
+                                                 {"vz"},
+                                                 {"omegax"},
+                                                 {"omegay"},
+                                                 {"omegaz"},
+                                                 {"material"}};
   for (int column = 0; column < count; ++column) at_[column] = position_of(names[column], header_line);
   std::vector<std::string> missing;
   for (const Column needed : {x, y, z})
     if (at_[needed] < 0) missing.emplace_back(names[needed][0]);
   if (at_[radius] < 0 && at_[diameter] < 0 && !(radius_m_ > 0)) missing.emplace_back("radius");
   if (missing.empty()) return;
-  throw InputError(fmt::format("{}:{}: no column {} (columns are {}){}", file_, header_line, fmt::join(missing, ", "),
-                               fmt::join(names_, ", "),
-                               missing.back() == "radius" ? " add it, or give the radius of all particles" : ""));
+  throw InputError(
+      fmt::format("{}:{}: no column {} (columns are {}){}", file_, header_line, fmt::join(missing, ", "),
+                  fmt::join(names_, ", "),
+                  missing.back() == "radius" ? " add it, or give the radius of all particles" : ""));
 }
 
 int ParticleTable::position_of(const std::vector<const char*>& aliases, std::size_t header_line) {
@@ -49,7 +60,8 @@ int ParticleTable::position_of(const std::vector<const char*>& aliases, std::siz
   for (const char* alias : aliases)
     for (std::size_t k = 0; k < names_.size(); ++k) {
       if (names_[k] != alias) continue;
-      if (found >= 0) throw InputError(fmt::format("{}:{}: column {} is given twice", file_, header_line, names_[k]));
+      if (found >= 0)
+        throw InputError(fmt::format("{}:{}: column {} is given twice", file_, header_line, names_[k]));
       found = static_cast<int>(k);
     }
   return found;
@@ -83,7 +95,8 @@ double ParticleTable::number(Column column, std::size_t line, const std::vector<
 
 void ParticleTable::add_row(std::size_t line, const std::vector<std::string_view>& fields) {
   if (fields.size() != names_.size())
-    return problem(line, fmt::format("{} values (the header names {} columns)", fields.size(), names_.size()));
+    return problem(line,
+                   fmt::format("{} values (the header names {} columns)", fields.size(), names_.size()));
   const auto read = [&](Column column, double absent = 0) { return number(column, line, fields, absent); };
   Bed& bed = snapshot_.bed;
   const Vec3 position{read(x), read(y), read(z)}, velocity{read(vx), read(vy), read(vz)};
@@ -98,7 +111,8 @@ void ParticleTable::sort_by_id() {
   Bed& bed = snapshot_.bed;
   std::vector<std::size_t> order(bed.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return bed.id[a] < bed.id[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return bed.id[a] < bed.id[b]; });
   for (std::size_t k = 1; k < order.size(); ++k)
     if (bed.id[order[k]] == bed.id[order[k - 1]] && problem_count_ == 0)
       problem(line_[order[k]], fmt::format("id = {} (also on line {}) ids must differ", bed.id[order[k]],

@@ -13,7 +13,9 @@ namespace granrad {
 namespace {
 
 Material read_material(TomlTable table, const std::string& default_name) {
-  const auto positive = [](const char* unit) { return NumberRule{.unit = unit, .min = 0, .min_exclusive = true}; };
+  const auto positive = [](const char* unit) {
+    return NumberRule{.unit = unit, .min = 0, .min_exclusive = true};
+  };
   const NumberRule fraction{.min = 0, .max = 1, .min_exclusive = true};
   table.add_keys_from_file("file");
   Material m;
@@ -104,7 +106,8 @@ Scene read_scene(TomlDocument& document) {
   read_feed(root.table("feed"), scene);
   read_dem(root.table("dem"), scene);
   if (scene.feed.kind == FeedSettings::Kind::plug && scene.gravity_m_s2 != Vec3{})
-    general.problem("gravity_m_s2", "must be zero with [feed] kind = \"plug\": particles would fall out of the plug");
+    general.problem("gravity_m_s2",
+                    "must be zero with [feed] kind = \"plug\": particles would fall out of the plug");
   return scene;
 }
 

@@ -16,15 +16,15 @@ namespace granrad {
 struct FeedSettings {
   enum class Kind { none, plug, hopper };
   Kind kind = Kind::none;
-  double solid_fraction = 0;       ///< plug: target in the channel
-  double mass_flow_kg_s = 0;       ///< plug: rho phi A v; hopper: refill rate when > 0
-  double velocity_m_s = 0;         ///< plug: downward speed (towards z_min)
+  double solid_fraction = 0;  ///< plug: target in the channel
+  double mass_flow_kg_s = 0;  ///< plug: rho phi A v; hopper: refill rate when > 0
+  double velocity_m_s = 0;    ///< plug: downward speed (towards z_min)
   double transverse_velocity_std_m_s = 0;
-  bool start_filled = true;        ///< plug: channel full at time 0; false: empty
-  std::int64_t particle_count = 0; ///< hopper: particles kept in the system
-  Box fill_region{};               ///< hopper: where particles are inserted ([feed.fill_region] min_m, max_m)
-  bool refill = true;              ///< hopper: what left comes back cold at the top; false: one batch
-  double remove_below_m = 0;       ///< hopper: particles whose centre falls below this z leave
+  bool start_filled = true;         ///< plug: channel full at time 0; false: empty
+  std::int64_t particle_count = 0;  ///< hopper: particles kept in the system
+  Box fill_region{};          ///< hopper: where particles are inserted ([feed.fill_region] min_m, max_m)
+  bool refill = true;         ///< hopper: what left comes back cold at the top; false: one batch
+  double remove_below_m = 0;  ///< hopper: particles whose centre falls below this z leave
   std::uint64_t seed = 1;
 };
 
@@ -38,10 +38,10 @@ struct Scene {
   Vec3 gravity_m_s2{};
   std::vector<Material> materials;  ///< [material] first, then [[materials]] by name
   Box box;
-  std::vector<Wall> walls;  ///< the box's six in the order x_min..z_max, then polygons, then meshes
+  std::vector<Wall> walls;         ///< the box's six in the order x_min..z_max, then polygons, then meshes
   std::size_t box_wall_count = 0;  ///< how many of them, in front, are faces of the box
   std::array<bool, 3> periodic{};
-  Box region;  ///< the heat-transfer region
+  Box region;                           ///< the heat-transfer region
   double particle_diameter_m = 0;       ///< of the feed's particles; with a file, its mean unless given
   double particle_temperature_K = 300;  ///< of the feed's particles, and of a file without temperatures
   std::filesystem::path particle_file;  ///< empty: particles come from the feed
@@ -51,15 +51,17 @@ struct Scene {
 };
 
 /// Reads and checks the flow part; problems go to the document (call finish() after every room has read).
-/// Derived, never asked for: one of a plug's solid fraction, mass flow and speed from the other two (mass flow =
-/// rho phi A v, A the cross-section of the box); a hopper's particle_count from mass_kg; the box around polygons and
-/// meshes; the region (the box); the diameter from a particle file; wall emissivity from the material.
+/// Derived, never asked for: one of a plug's solid fraction, mass flow and speed from the other two (mass
+/// flow = rho phi A v, A the cross-section of the box); a hopper's particle_count from mass_kg; the box
+/// around polygons and meshes; the region (the box); the diameter from a particle file; wall emissivity from
+/// the material.
 Scene read_scene(TomlDocument& document);
 
-/// The Bed at time 0 without a feed: walls and materials of the scene, particles from its file if any. A frame
-/// gives velocities, temperatures and contacts too (those with walls only if its walls are the scene's). Throws
-/// InputError when a centre lies behind a contact wall of the box (count and first ten ids), when two particles
-/// overlap by more than a tenth of the smaller radius, or when the file names a material the scene lacks.
+/// The Bed at time 0 without a feed: walls and materials of the scene, particles from its file if any. A
+/// frame gives velocities, temperatures and contacts too (those with walls only if its walls are the
+/// scene's). Throws InputError when a centre lies behind a contact wall of the box (count and first ten ids),
+/// when two particles overlap by more than a tenth of the smaller radius, or when the file names a material
+/// the scene lacks.
 Bed initial_bed(const Scene& scene);
 
 }  // namespace granrad

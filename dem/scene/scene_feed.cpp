@@ -17,15 +17,19 @@ constexpr double densest_random_packing = 0.64;
 
 /// Two of solid fraction, mass flow and speed give the third: m = rho phi A v.
 void read_plug_flow(TomlTable& feed, Scene& scene) {
-  const auto phi = feed.optional_number("solid_fraction", {.min = 0, .max = densest_random_packing,
-                                                           .min_exclusive = true, .max_exclusive = true,
-                                                           .why = "spheres cannot be packed denser at random"});
+  const auto phi =
+      feed.optional_number("solid_fraction", {.min = 0,
+                                              .max = densest_random_packing,
+                                              .min_exclusive = true,
+                                              .max_exclusive = true,
+                                              .why = "spheres cannot be packed denser at random"});
   const auto flow = feed.optional_number("mass_flow_kg_s", {.unit = "kg/s", .min = 0, .min_exclusive = true});
   const auto speed = feed.optional_number("velocity_m_s", {.unit = "m/s", .min = 0, .min_exclusive = true});
   const double density_area = scene.materials[0].density_kg_m3 * scene.box.size().x * scene.box.size().y;
   FeedSettings& out = scene.feed;
   if (phi.has_value() + flow.has_value() + speed.has_value() < 2) {
-    feed.problem("", "a plug needs two of solid_fraction, mass_flow_kg_s and velocity_m_s; the third follows");
+    feed.problem("",
+                 "a plug needs two of solid_fraction, mass_flow_kg_s and velocity_m_s; the third follows");
     return;
   }
   out.solid_fraction = phi ? *phi : *flow / (density_area * *speed);
@@ -33,11 +37,14 @@ void read_plug_flow(TomlTable& feed, Scene& scene) {
   out.mass_flow_kg_s = flow ? *flow : density_area * *phi * *speed;
   const double implied = density_area * out.solid_fraction * out.velocity_m_s;
   if (std::abs(implied - out.mass_flow_kg_s) > redundancy_tolerance * implied)
-    feed.problem("mass_flow_kg_s",
-                 fmt::format("solid_fraction and velocity_m_s give {:.4g} kg/s; leave one of the three out", implied));
+    feed.problem(
+        "mass_flow_kg_s",
+        fmt::format("solid_fraction and velocity_m_s give {:.4g} kg/s; leave one of the three out", implied));
   if (!phi && out.solid_fraction >= densest_random_packing)
-    feed.problem("mass_flow_kg_s", fmt::format("needs a solid fraction of {:.3g} at this speed, which cannot be packed; "
-                                               "raise velocity_m_s", out.solid_fraction));
+    feed.problem("mass_flow_kg_s",
+                 fmt::format("needs a solid fraction of {:.3g} at this speed, which cannot be packed; "
+                             "raise velocity_m_s",
+                             out.solid_fraction));
 }
 
 void read_plug(TomlTable& feed, Scene& scene) {
@@ -61,7 +68,8 @@ void read_hopper_count(TomlTable& feed, Scene& scene) {
       feed.integer("particle_count", 1, std::numeric_limits<std::int32_t>::max(), from_mass);
   if (std::abs(static_cast<double>(scene.feed.particle_count - from_mass)) >
       redundancy_tolerance * static_cast<double>(from_mass))
-    feed.problem("particle_count", fmt::format("mass_kg gives {} particles; leave one of the two out", from_mass));
+    feed.problem("particle_count",
+                 fmt::format("mass_kg gives {} particles; leave one of the two out", from_mass));
 }
 
 void read_hopper(TomlTable& feed, Scene& scene) {
@@ -73,7 +81,8 @@ void read_hopper(TomlTable& feed, Scene& scene) {
   const Vec3 size = out.fill_region.size();
   const double d = scene.particle_diameter_m;
   if (fill.has("min_m") && fill.has("max_m") && !(size.x >= d && size.y >= d && size.z >= d))
-    fill.problem("max_m", "the fill region must hold a particle: max_m - min_m >= the diameter in every direction");
+    fill.problem("max_m",
+                 "the fill region must hold a particle: max_m - min_m >= the diameter in every direction");
   out.refill = feed.boolean("refill", true);
   out.mass_flow_kg_s = feed.number("mass_flow_kg_s", {.unit = "kg/s", .min = 0, .min_exclusive = true}, 0.0);
   out.velocity_m_s = feed.number("velocity_m_s", {.unit = "m/s", .min = 0}, 0.0);
@@ -90,7 +99,8 @@ FeedSettings::Kind read_feed_kind(TomlTable feed) {
 
 void read_feed(TomlTable feed, Scene& scene) {
   if (!feed.present()) return;
-  scene.feed.seed = static_cast<std::uint64_t>(feed.integer("seed", 0, std::numeric_limits<std::int64_t>::max(), 1));
+  scene.feed.seed =
+      static_cast<std::uint64_t>(feed.integer("seed", 0, std::numeric_limits<std::int64_t>::max(), 1));
   if (scene.feed.kind == FeedSettings::Kind::plug)
     read_plug(feed, scene);
   else

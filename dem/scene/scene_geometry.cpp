@@ -64,20 +64,24 @@ class GeometryReader {
   void read_properties(TomlTable& table, Wall& wall) {
     const std::vector<std::string> roles{"isothermal", "adiabatic", "open", "excluded"};
     if (roles_required_ && !table.has("role"))
-      table.problem("role", "missing: radiation is on, so every wall must choose \"isothermal\", \"adiabatic\", "
-                            "\"open\" or \"excluded\"");
+      table.problem("role",
+                    "missing: radiation is on, so every wall must choose \"isothermal\", \"adiabatic\", "
+                    "\"open\" or \"excluded\"");
     const std::string role = table.choice("role", roles, "adiabatic");
     wall.role = static_cast<WallRole>(std::find(roles.begin(), roles.end(), role) - roles.begin());
     const bool has_temperature = wall.role == WallRole::isothermal || wall.role == WallRole::open;
     if (has_temperature)
       wall.temperature_K = table.number("temperature_K", {.unit = "K", .min = 0, .min_exclusive = true});
     else if (table.has("temperature_K"))
-      table.problem("temperature_K", fmt::format("an {} wall has no temperature of its own: remove it, or choose "
-                                                 "role = \"isothermal\"", role));
+      table.problem("temperature_K",
+                    fmt::format("an {} wall has no temperature of its own: remove it, or choose "
+                                "role = \"isothermal\"",
+                                role));
     if (wall.role == WallRole::open) {
       wall.emissivity = 1;
       if (table.has("emissivity"))
-        table.problem("emissivity", "an open wall is the black surroundings: remove it, or choose role = \"isothermal\"");
+        table.problem("emissivity",
+                      "an open wall is the black surroundings: remove it, or choose role = \"isothermal\"");
     } else {
       wall.emissivity = table.number(
           "emissivity", {.min = 0, .max = 1, .min_exclusive = true, .why = "grey diffuse surface"},
@@ -109,7 +113,8 @@ class GeometryReader {
         return "the corners must lie in one plane; use triangles, or a [[mesh]]";
     for (std::size_t k = 0; k < v.size(); ++k) {
       const Vec3 edge = v[(k + 1) % v.size()] - v[k];
-      if (norm(edge) <= flatness * size) return fmt::format("corners {} and {} coincide", k, (k + 1) % v.size());
+      if (norm(edge) <= flatness * size)
+        return fmt::format("corners {} and {} coincide", k, (k + 1) % v.size());
       for (const auto& p : v)
         if (dot(cross(normal, edge), p - v[k]) < -flatness * size * norm(edge))
           return "the polygon must be convex; split it";
@@ -177,7 +182,8 @@ class GeometryReader {
     if (!(size.x > 0 && size.y > 0 && size.z > 0))
       region.problem("max_m", "must be above min_m in every direction");
     for (int axis = 0; axis < 3; ++axis)
-      if (scene_.region.min[axis] < box.min[axis] - slack || scene_.region.max[axis] > box.max[axis] + slack) {
+      if (scene_.region.min[axis] < box.min[axis] - slack ||
+          scene_.region.max[axis] > box.max[axis] + slack) {
         region.problem("", fmt::format("the region must lie inside the box, {} to {} along {}", box.min[axis],
                                        box.max[axis], "xyz"[axis]));
       }

@@ -22,7 +22,7 @@ using StateBlocks = std::map<std::string, StateBlock>;
 struct Snapshot {
   Bed bed;
   StateBlocks state;
-  std::string origin;  ///< file it came from
+  std::string origin;           ///< file it came from
   bool has_temperature = true;  ///< false: the file had none, temperature_K is a placeholder of 300 K
 };
 
@@ -32,18 +32,20 @@ struct Snapshot {
 void write_frame(const std::filesystem::path& file, const Bed& bed, const StateBlocks& state,
                  const std::map<std::string, std::vector<double>>& extra = {});
 
-/// Writes `name.hdf.series`, by which ParaView shows frames at their times: (file, time in s), file names relative
-/// to the folder of `series_file`. Written whole or not at all. Throws IoError.
+/// Writes `name.hdf.series`, by which ParaView shows frames at their times: (file, time in s), file names
+/// relative to the folder of `series_file`. Written whole or not at all. Throws IoError.
 void write_series(const std::filesystem::path& series_file,
                   const std::vector<std::pair<std::filesystem::path, double>>& frames);
 
-/// Reads a frame written by write_frame, bit for bit. Throws IoError (cannot read) or InputError (not a frame).
+/// Reads a frame written by write_frame, bit for bit. Throws IoError (cannot read) or InputError (not a
+/// frame).
 Snapshot read_frame(const std::filesystem::path& file);
 
 /// Reads a snapshot of any supported kind by extension and content: .hdf frame, .csv
 /// (x,y,z,radius[,temperature,vx,vy,vz,omegax,omegay,omegaz], SI), LIGGGHTS/LAMMPS text dump (columns by
 /// header name; the last snapshot of the file). `radius_m` > 0 serves files without a radius column. Radii,
-/// positions must be finite, radii positive, else InputError with line numbers, every line at once (first 20).
+/// positions must be finite, radii positive, else InputError with line numbers, every line at once (first
+/// 20).
 Snapshot read_snapshot(const std::filesystem::path& file, double radius_m = 0);
 
 }  // namespace granrad

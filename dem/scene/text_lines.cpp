@@ -23,7 +23,8 @@ std::string_view trimmed(std::string_view text) {
 
 TextLines::TextLines(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file)) throw IoError(fmt::format("{}: cannot be read", file.string()));
+  if (!in || std::filesystem::is_directory(file))
+    throw IoError(fmt::format("{}: cannot be read", file.string()));
   in.seekg(0, std::ios::end);
   text_.resize(static_cast<std::size_t>(std::max<std::streamoff>(in.tellg(), 0)));
   in.seekg(0);
@@ -43,7 +44,7 @@ bool TextLines::next(std::string_view& line) {
 
 void split_at(char separator, std::string_view line, std::vector<std::string_view>& out) {
   out.clear();
-  for (std::size_t begin = 0;; ) {
+  for (std::size_t begin = 0;;) {
     const auto end = line.find(separator, begin);
     out.push_back(trimmed(line.substr(begin, end == line.npos ? end : end - begin)));
     if (end == line.npos) return;

@@ -187,8 +187,9 @@ struct TomlTable::Node {
     if (why_not.empty() && !inside(rule, value))
       why_not = fmt::format("must be {}{}{}", bounds_text(rule), *rule.why ? ": " : "", rule.why);
     if (why_not.empty()) return value;
-    state->add(place_of(node.source(), state->name), at,
-               shown.empty() ? fmt::format("{}: {}", at, why_not) : fmt::format("{} = {} ({})", at, shown, why_not));
+    state->add(
+        place_of(node.source(), state->name), at,
+        shown.empty() ? fmt::format("{}: {}", at, why_not) : fmt::format("{} = {} ({})", at, shown, why_not));
     return placeholder(rule);
   }
 
@@ -243,7 +244,9 @@ TomlTable TomlDocument::root() {
   return TomlTable(std::make_shared<TomlTable::Node>(TomlTable::Node{state_.get(), &state_->root, ""}));
 }
 
-fs::path TomlDocument::folder() const { return state_->folder; }
+fs::path TomlDocument::folder() const {
+  return state_->folder;
+}
 
 std::string TomlDocument::effective_text() const {
   std::ostringstream out;
@@ -290,7 +293,8 @@ void TomlDocument::override_value(std::string_view text) {
   if (const auto index_end = key.rfind(']'); index_end != key.npos) {
     toml::node* element = state_->find(key.substr(0, index_end + 1), into);
     if (!element || !element->is_table())
-      return state_->add(here, "", fmt::format("there is no [[{}]] in {}", key.substr(0, index_end + 1), state_->name));
+      return state_->add(here, "",
+                         fmt::format("there is no [[{}]] in {}", key.substr(0, index_end + 1), state_->name));
     into = element->as_table();
     key.remove_prefix(std::min(index_end + 2, key.size()));
   }
@@ -306,15 +310,16 @@ void TomlDocument::override_value(std::string_view text) {
   state_->add(here, "", "cannot be read as key=value");
 }
 
-void TomlDocument::State::report_unknown(const toml::key& key, const toml::node& node, const std::string& path) {
+void TomlDocument::State::report_unknown(const toml::key& key, const toml::node& node,
+                                         const std::string& path) {
   const std::string name(key.str());
   const auto& siblings = known[path];
   const std::string meant = closest_word(name, {siblings.begin(), siblings.end()});
   const bool is_table = node.is_table();
-  std::string text = is_table            ? fmt::format("unknown table [{}]", join_path(path, name))
+  std::string text = is_table                    ? fmt::format("unknown table [{}]", join_path(path, name))
                      : node.is_array_of_tables() ? fmt::format("unknown table [[{}]]", join_path(path, name))
-                     : path.empty()      ? fmt::format("unknown key '{}'", name)
-                                         : fmt::format("unknown key '{}' in [{}]", name, path);
+                     : path.empty()              ? fmt::format("unknown key '{}'", name)
+                                                 : fmt::format("unknown key '{}' in [{}]", name, path);
   std::string home;
   for (const auto& [table, keys] : known)
     if (!table.empty() && keys.count(name)) home = table;
@@ -369,8 +374,12 @@ void TomlDocument::finish() {
 
 // ---- table
 
-bool TomlTable::present() const { return node_->table; }
-std::string TomlTable::path() const { return node_->path; }
+bool TomlTable::present() const {
+  return node_->table;
+}
+std::string TomlTable::path() const {
+  return node_->path;
+}
 
 bool TomlTable::has(std::string_view key) const {
   node_->state->known[node_->path].emplace(key);
@@ -403,9 +412,9 @@ double TomlTable::number(std::string_view key, const NumberRule& rule, double fa
 std::int64_t TomlTable::integer(std::string_view key, std::int64_t min, std::int64_t max,
                                 std::optional<std::int64_t> fallback) {
   const std::int64_t allowed = std::clamp<std::int64_t>(fallback.value_or(min), min, max);
-  const std::string expected =
-      max == std::numeric_limits<std::int64_t>::max() ? fmt::format("an integer >= {}", min)
-                                                      : fmt::format("an integer in [{}, {}]", min, max);
+  const std::string expected = max == std::numeric_limits<std::int64_t>::max()
+                                   ? fmt::format("an integer >= {}", min)
+                                   : fmt::format("an integer in [{}, {}]", min, max);
   const toml::node* node = node_->get(key);
   if (!node) {
     if (!fallback) node_->missing(key, expected);
@@ -492,7 +501,8 @@ std::vector<Vec3> TomlTable::vec3_list(std::string_view key, const NumberRule& e
   return all;
 }
 
-std::vector<double> TomlTable::number_list(std::string_view key, const NumberRule& each, std::size_t min_count) {
+std::vector<double> TomlTable::number_list(std::string_view key, const NumberRule& each,
+                                           std::size_t min_count) {
   std::vector<double> all;
   if (const toml::array* array = node_->list(key, min_count, "numbers"))
     for (std::size_t k = 0; k < array->size(); ++k)
@@ -507,7 +517,8 @@ std::vector<std::string> TomlTable::string_list(std::string_view key, std::size_
       if (const auto* text = (*array)[k].as_string())
         all.push_back(text->get());
       else
-        node_->state->add_at((*array)[k], fmt::format("{}[{}]", node_->path_of(key), k), "must be a text in quotes");
+        node_->state->add_at((*array)[k], fmt::format("{}[{}]", node_->path_of(key), k),
+                             "must be a text in quotes");
     }
   return all;
 }
@@ -523,8 +534,8 @@ void TomlTable::add_keys_from_file(std::string_view key) {
 TomlTable TomlTable::table(std::string_view key) {
   toml::node* node = node_->get(key);
   if (node && !node->is_table()) node_->state->add_at(*node, node_->path_of(key), "must be a table");
-  return TomlTable(std::make_shared<Node>(
-      Node{node_->state, node ? node->as_table() : nullptr, node_->path_of(key)}));
+  return TomlTable(
+      std::make_shared<Node>(Node{node_->state, node ? node->as_table() : nullptr, node_->path_of(key)}));
 }
 
 std::vector<TomlTable> TomlTable::tables(std::string_view key) {
@@ -532,7 +543,8 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) {
   toml::node* node = node_->get(key);
   toml::array* array = node ? node->as_array() : nullptr;
   if (node && !node->is_array_of_tables() && !(array && array->empty()))
-    node_->state->add_at(*node, node_->path_of(key), fmt::format("must be written as [[{}]]", node_->path_of(key)));
+    node_->state->add_at(*node, node_->path_of(key),
+                         fmt::format("must be written as [[{}]]", node_->path_of(key)));
   else if (array)
     for (std::size_t k = 0; k < array->size(); ++k)
       all.push_back(TomlTable(std::make_shared<Node>(
@@ -544,8 +556,9 @@ void TomlTable::problem(std::string_view key, std::string_view message) {
   node_->state->known[node_->path].emplace(key);
   const toml::node* node = node_->table ? (key.empty() ? node_->table : node_->table->get(key)) : nullptr;
   if (node) return node_->state->add_at(*node, node_->path_of(key), std::string(message));
-  const Place place = node_->table && !node_->path.empty() ? place_of(node_->table->source(), node_->state->name)
-                                                           : Place{node_->state->name};
+  const Place place = node_->table && !node_->path.empty()
+                          ? place_of(node_->table->source(), node_->state->name)
+                          : Place{node_->state->name};
   node_->state->add(place, node_->path_of(key), fmt::format("{}: {}", node_->path_of(key), message));
 }
 

@@ -87,10 +87,10 @@ class TomlTable {
   /// keep their place in that file for messages.
   void add_keys_from_file(std::string_view key);
 
-  TomlTable table(std::string_view key);               ///< [key]; absent reads as empty
+  TomlTable table(std::string_view key);                ///< [key]; absent reads as empty
   std::vector<TomlTable> tables(std::string_view key);  ///< [[key]]
-  /// Records a problem at `key` of this table, or at the table when the key is absent, as `path = value (message)`;
-  /// a message that starts with "= " shows the value itself.
+  /// Records a problem at `key` of this table, or at the table when the key is absent, as `path = value
+  /// (message)`; a message that starts with "= " shows the value itself.
   void problem(std::string_view key, std::string_view message);
 
  private:

@@ -30,7 +30,8 @@ ut_system* units() {
     ut_set_error_message_handler(ut_ignore);
     return System(ut_read_xml(nullptr));
   }();
-  if (!system) throw IoError("the UDUNITS2 unit database cannot be read; install it or set UDUNITS2_XML_PATH");
+  if (!system)
+    throw IoError("the UDUNITS2 unit database cannot be read; install it or set UDUNITS2_XML_PATH");
   return system.get();
 }
 

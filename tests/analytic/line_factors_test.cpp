@@ -15,18 +15,28 @@ namespace {
 constexpr double student_limit = 4.4;
 constexpr int runs = 12;
 
-LineOptions options(std::uint64_t seed, int directions = 600) {
+LineOptions options(std::uint64_t seed, int directions = 200) {
   LineOptions o;
   o.directions = directions;
   o.seed = seed;
+  o.threads = 1;
   return o;
 }
 
-/// X_ij over the sampled area of i, so that only the directions' share of j is judged.
-Repeated measured_factor(const Enclosure& e, std::size_t i, std::size_t j, int directions = 600) {
-  return repeat(runs, [&](std::uint64_t seed) {
-    return factor(sweep_view_factors(e, options(seed, directions)), i, j);
-  });
+/// hits / launched of i to every surface of `to`, each judged by its own spread between the runs.
+std::vector<Repeated> measured_factors(const Enclosure& e, std::size_t i, const std::vector<std::size_t>& to,
+                                       int directions = 200) {
+  std::vector<HitCounts> counts;
+  for (int run = 1; run <= runs; ++run)
+    counts.push_back(sweep_view_factors(e, options(static_cast<std::uint64_t>(run), directions)));
+  std::vector<Repeated> factors;
+  for (const std::size_t j : to)
+    factors.push_back(repeat(runs, [&](std::uint64_t seed) { return factor(counts[seed - 1], i, j); }));
+  return factors;
+}
+
+Repeated measured_factor(const Enclosure& e, std::size_t i, std::size_t j, int directions = 200) {
+  return measured_factors(e, i, {j}, directions)[0];
 }
 
 double lens(double a, double b, double d) {
@@ -49,12 +59,14 @@ double lens_factor(double r1, double r2, double s) {
          (2 * pi * r1 * r1);
 }
 
-const Box cube{{0, 0, 0}, {0.02, 0.02, 0.02}};
 constexpr double r = 4e-4;
 
+/// Two spheres in a cube that leaves little room around them, so that most lines meet one.
 Enclosure pair(double r1, double r2, double s) {
-  const Vec3 axis = normalized({0.36, 0.48, 0.8}), at{0.01, 0.01, 0.01};
-  return boxed(spheres_in_open_space({at, at + s * axis}, {r1, r2}), cube);
+  const Vec3 axis = normalized({0.36, 0.48, 0.8});
+  const double half = 1.01 * (0.5 * s + std::max(r1, r2));
+  const Box cube{{-half, -half, -half}, {half, half, half}};
+  return boxed(spheres_in_open_space({-0.5 * s * axis, 0.5 * s * axis}, {r1, r2}), cube);
 }
 
 // Catches (planted and seen): X = (h^2/D) S, half the lines; sorting by u instead of depth leaves this green,
@@ -74,10 +86,10 @@ TEST(LineFactors, UnequalSpheres) {
 
 // Ratio 100: the lattice resolves the small sphere, the large one covers 10^4 times as many lines.
 TEST(LineFactors, RatioOfAHundred) {
-  const Enclosure e = pair(100 * 2e-5, 2e-5, 101 * 2e-5);
-  const Repeated small_to_large = measured_factor(e, 1, 0, 60);
+  const Enclosure e = pair(2e-3, 2e-5, 101 * 2e-5);
+  const Repeated small_to_large = measured_factor(e, 1, 0, 10);
   EXPECT_LT(std::abs(small_to_large.sigmas_off(exact_two_sphere(2e-5, 2e-3, 101 * 2e-5))), student_limit);
-  EXPECT_LT(small_to_large.error, 0.02);
+  EXPECT_LT(small_to_large.error, 0.03);
 }
 
 TEST(LineFactors, OverlappingSpheres) {
@@ -107,10 +119,11 @@ TEST(LineFactors, SphereAndWalls) {
     box.min += shift, box.max += shift;
     const Vec3 centre = Vec3{0.003, r + 1e-9, 0.02} + shift;
     const Enclosure e = boxed(spheres_in_open_space({centre}, {r}), box);
-    for (std::size_t w : {0u, 1u, 2u, 3u, 5u}) {
-      const Repeated f = measured_factor(e, 0, 1 + w, 300);
-      const double exact = exact_sphere_polygon(centre, e.walls[w]);
-      EXPECT_LT(std::abs(f.sigmas_off(exact)), student_limit) << e.walls[w].name << " at " << offset;
+    const std::vector<std::size_t> seen{0, 1, 2, 3, 5};
+    const auto f = measured_factors(e, 0, {1, 2, 3, 4, 6}, 20);
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      const double exact = exact_sphere_polygon(centre, e.walls[seen[k]]);
+      EXPECT_LT(std::abs(f[k].sigmas_off(exact)), student_limit) << e.walls[seen[k]].name << " at " << offset;
     }
   }
 }
@@ -119,12 +132,15 @@ TEST(LineFactors, SphereAndWalls) {
 TEST(LineFactors, EmptyBox) {
   const auto exact = exact_empty_box(channel());
   const Enclosure e = boxed(spheres_in_open_space({}, {}), channel());
-  for (std::size_t i = 0; i < 6; ++i)
-    for (std::size_t j = i + 1; j < 6; ++j) {
-      const Repeated f = measured_factor(e, i, j, 100);
-      EXPECT_LT(std::abs(f.sigmas_off(exact[i][j])), student_limit) << i << " to " << j;
-      EXPECT_LT(f.error, 0.01);
+  for (std::size_t i = 0; i < 5; ++i) {
+    std::vector<std::size_t> others;
+    for (std::size_t j = i + 1; j < 6; ++j) others.push_back(j);
+    const auto f = measured_factors(e, i, others, 20);
+    for (std::size_t k = 0; k < others.size(); ++k) {
+      EXPECT_LT(std::abs(f[k].sigmas_off(exact[i][others[k]])), student_limit) << i << " to " << others[k];
+      EXPECT_LT(f[k].error, 0.01);
     }
+  }
 }
 
 // A tetrahedron and an octahedron of planar walls: convex, but no box. By symmetry each face of the
@@ -149,8 +165,8 @@ TEST(LineFactors, ConvexPolyhedra) {
     const Vec3 x{k & 1 ? 1.0 : -1.0, 0, 0}, y{0, k & 2 ? 1.0 : -1.0, 0}, z{0, 0, k & 4 ? 1.0 : -1.0};
     octahedron.walls.push_back(face("face", x, y, z, middle));
   }
-  for (std::size_t w = 1; w < 9; ++w)
-    EXPECT_LT(std::abs(measured_factor(octahedron, 0, w, 100).sigmas_off(0.125)), student_limit) << w;
+  for (const Repeated& eighth : measured_factors(octahedron, 0, {1, 2, 3, 4, 5, 6, 7, 8}, 50))
+    EXPECT_LT(std::abs(eighth.sigmas_off(0.125)), student_limit);
   EXPECT_EQ(hits(sweep_view_factors(octahedron, options(1)), 0, 9), 0)
       << "nothing leaves a closed polyhedron";
 }

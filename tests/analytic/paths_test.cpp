@@ -180,8 +180,8 @@ TEST(PathsReference, OfTheCubeWithOneRadiosityPerWallIsTheClosedForm) {
   EXPECT_NEAR(reradiating_cube(1), 18224.6836, 1e-3);
 }
 
-// Re-radiation at every point of the side walls, and emission and reflection at every point of the grey ones: 7 %
-// less than the closed form, whose one radiosity per wall is exact only for patches that see all alike.
+// Re-radiation at every point of the side walls, and emission and reflection at every point of the grey ones:
+// 7 % less than the closed form, whose one radiosity per wall is exact only for patches that see all alike.
 TEST_P(GreyPaths, ReradiatingCube) {
   static const double coarse = reradiating_cube(8), fine = reradiating_cube(16);
   const double exact = fine + (fine - coarse) / 3;  // second order in the patch

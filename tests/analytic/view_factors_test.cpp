@@ -1,5 +1,6 @@
-// Requirement: ray-traced view factors equal the closed forms within 4 sigma at 1e6 rays, and the sigma they state is
-// right: two spheres of any sizes from contact to ten diameters, a sphere in the channel box, the empty box.
+// Requirement: ray-traced view factors equal the closed forms within 4 sigma at 1e6 rays, and the sigma they
+// state is right: two spheres of any sizes from contact to ten diameters, a sphere in the channel box, the
+// empty box.
 #include "raytrace/view_factors.h"
 
 #include <gtest/gtest.h>
@@ -30,8 +31,9 @@ struct TwoSpheres {
 
 class TwoSphereFactor : public testing::TestWithParam<TwoSpheres> {};
 
-// Planted errors: emission uniform over the hemisphere instead of cosine is blind here beyond contact (style.md),
-// see z in the comments of SphereInBox; a self-hit (source not excluded) leaves too few open rays.
+// Planted errors: emission uniform over the hemisphere instead of cosine is blind here beyond contact
+// (style.md), see z in the comments of SphereInBox; a self-hit (source not excluded) leaves too few open
+// rays.
 TEST_P(TwoSphereFactor, EqualsQuadrature) {
   const auto [r1, r2, gap] = GetParam();
   const double s = (r1 + r2) + gap * 2 * r1;
@@ -42,36 +44,36 @@ TEST_P(TwoSphereFactor, EqualsQuadrature) {
     EXPECT_LT(std::abs(sigmas_off(counts, 1, 0, exact_two_sphere(r2, r1, s))), 4);
     EXPECT_EQ(hits(counts, 0, 0), 0);
     EXPECT_EQ(hits(counts, 0, 1) + hits(counts, 0, 2), static_cast<double>(counts.launched[0]));
-    std::printf("%-6s z = %.2f %.2f\n", sampling == Sampling::plain ? "plain" : "sobol",
-                sigmas_off(counts, 0, 1, exact_two_sphere(r1, r2, s)), sigmas_off(counts, 1, 0, exact_two_sphere(r2, r1, s)));
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(ContactToTenDiameters, TwoSphereFactor,
                          testing::Values(TwoSpheres{r, r, 0}, TwoSpheres{r, r, 0.1}, TwoSpheres{r, r, 1},
-                                         TwoSpheres{r, r, 9}, TwoSpheres{r, 3 * r, 0}, TwoSpheres{r, 3 * r, 2},
-                                         TwoSpheres{r, 100 * r, 0}, TwoSpheres{r, 0.2 * r, 9}));
+                                         TwoSpheres{r, r, 9}, TwoSpheres{r, 3 * r, 0},
+                                         TwoSpheres{r, 3 * r, 2}, TwoSpheres{r, 100 * r, 0},
+                                         TwoSpheres{r, 0.2 * r, 9}));
 
-// chi^2 of 200 seeds around the exact value, in units of the sigma that one_way_estimate states. Its own scatter is
-// sqrt(2 / 200) = 0.1. sqrt(n) instead of n in the variance is off by factors, not by 20 %.
+// chi^2 of 200 seeds, both directions, around the exact value, in units of the sigma that one_way_estimate
+// states. Its own scatter is sqrt(2 / 400) = 0.07. sqrt(n) instead of n in the variance is off by factors,
+// not by 20 %.
 TEST(TwoSphereFactor, StatedSigmaIsRight) {
   const Enclosure e = spheres_in_open_space({{0, 0, 0}, {3 * r, 0, 0}}, {r, r});
   const double exact = exact_two_sphere(r, r, 3 * r);
   const double area = 4 * 3.14159265358979 * r * r;
   for (const auto sampling : {Sampling::plain, Sampling::sobol})
     for (const double n : {1e3, 2e4}) {
-      double chi2 = 0, mean = 0, factor_sum = 0;
+      double chi2 = 0;
       for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-        const HitCounts counts = trace_view_factors(e, rays(n, sampling, seed));
-        const ExchangeAreas x = one_way_estimate(counts);
-        const double f = value(x, 0, 1) / area;
-        const double sigma = std::sqrt(x.variance[0]) / area;
-        chi2 += (f - exact) * (f - exact) / (sigma * sigma) / 200;
-        mean += f / 200;
-        factor_sum += count_variance_factor(counts, 0, 0) / 200;
+        TraceOptions options = rays(n, sampling, seed);
+        options.threads = 1;
+        const ExchangeAreas x = one_way_estimate(trace_view_factors(e, options));
+        for (const std::int64_t k :
+             {0, 2}) {  // the sphere's entry in each row; the other is the surroundings
+          const double off = x.value[static_cast<std::size_t>(k)] - exact * area;
+          chi2 += off * off / x.variance[static_cast<std::size_t>(k)] / 400;
+        }
       }
-      std::printf("plain/sobol %d n %.0f: chi2 %.3f, mean/exact - 1 = %.2e, variance factor %.3f\n",
-                  sampling == Sampling::sobol, n, chi2, mean / exact - 1, factor_sum);
+      std::printf("%s, %.0f rays: chi^2 %.3f\n", sampling == Sampling::plain ? "plain" : "sobol", n, chi2);
       EXPECT_GT(chi2, 0.8);
       EXPECT_LT(chi2, 1.25);
     }
@@ -94,8 +96,9 @@ TEST(SphereInBox, EqualsSolidAngles) {
   int rows = 0;
   for (std::getline(file, line), std::getline(file, line); std::getline(file, line); ++rows) {
     double x, y, z, f[6];
-    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf", &x, &y, &z, f, f + 1, f + 2, f + 3,
-                          f + 4, f + 5), 9);
+    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf", &x, &y, &z, f, f + 1, f + 2,
+                          f + 3, f + 4, f + 5),
+              9);
     const Vec3 centre{x * 1e-3, y * 1e-3, z * 1e-3};
     const Enclosure e = boxed(spheres_in_open_space({centre}, {r}), channel());
     const HitCounts counts = trace_sphere(e);
@@ -121,8 +124,10 @@ TEST(EmptyBox, EqualsClosedForms) {
   const HitCounts counts = trace_view_factors(boxed({}, channel()), rays(1e6, Sampling::plain));
   for (std::size_t i = 0; i < 6; ++i)
     for (std::size_t j = 0; j < 6; ++j) {
-      if (i == j) EXPECT_EQ(hits(counts, i, j), 0);
-      else EXPECT_LT(std::abs(sigmas_off(counts, i, j, exact[i][j])), 4) << i << ' ' << j;
+      if (i == j)
+        EXPECT_EQ(hits(counts, i, j), 0);
+      else
+        EXPECT_LT(std::abs(sigmas_off(counts, i, j, exact[i][j])), 4) << i << ' ' << j;
     }
   EXPECT_EQ(counts.leaked, 0);
 }
@@ -138,9 +143,13 @@ TEST(Exact, TwoSpheresEqualTheTable) {
   }
   EXPECT_GT(rows, 20);
   EXPECT_NEAR(exact_two_sphere(1, 1, 2), 0.0755868184216, 1e-12);
-  // Reciprocity, and the limit of a small sphere touching a plane-like one: half its view.
+  // Reciprocity.
   EXPECT_NEAR(exact_two_sphere(1, 3, 5), 9 * exact_two_sphere(3, 1, 5), 1e-12);
-  EXPECT_NEAR(exact_two_sphere(1, 1e6, 1e6 + 1), 0.5, 1e-3);
+  // 30-digit quadrature, made with mpmath.
+  EXPECT_NEAR(exact_two_sphere(1, 3, 4), 0.179346647067957, 1e-11);
+  EXPECT_NEAR(exact_two_sphere(1, 5, 6), 0.232917683575228, 1e-11);
+  EXPECT_NEAR(exact_two_sphere(1, 100, 101), 0.43257445117347, 1e-9);
+  EXPECT_NEAR(exact_two_sphere(1, 100, 101.5), 0.415627015689763, 1e-9);
 }
 
 }  // namespace

@@ -39,6 +39,7 @@ LineOptions options(int directions = 100, std::uint64_t seed = 1) {
   LineOptions o;
   o.directions = directions;
   o.seed = seed;
+  o.threads = 1;
   return o;
 }
 
@@ -83,7 +84,7 @@ TEST(LineBeds, MeanChordIsFourVoidVolumesOverArea) {
     const Repeated chord = repeat(
         16, [&](std::uint64_t seed) { return sweep_view_factors(*bed, options(4, seed)).mean_chord_m; });
     EXPECT_LT(std::abs(chord.sigmas_off(exact)), 4.1);  // Student, 15 degrees of freedom: 1 in 1000
-    EXPECT_LT(chord.error, 0.01 * exact);
+    EXPECT_LT(chord.error, 0.02 * exact);
   }
 }
 

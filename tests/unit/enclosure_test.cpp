@@ -1,4 +1,5 @@
-// What the tracers see is the bed inside the region, closed by its walls, with the ends moved clear of the spheres.
+// What the tracers see is the bed inside the region, closed by its walls, with the ends moved clear of the
+// spheres.
 #include "raytrace/enclosure.h"
 
 #include <gtest/gtest.h>
@@ -53,9 +54,9 @@ TEST(Enclosure, KeepsTheParticlesOfTheRegionInTheirOrder) {
 TEST(Enclosure, OpenEndsClearTheSpheresAndTheBoxStaysClosed) {
   Bed bed = channel();
   const double r = 4e-4;
-  bed.add({0.005, 0.002, 0.0001}, {}, r, 300);          // pokes 0.0003 out of z_min
-  bed.add({0.002, 0.002, 0.0500}, {}, r, 300);          // centre on z_max
-  bed.add({0.00039, 0.002, 0.025}, {}, r, 300);         // overlaps x_min, a contact wall: stays
+  bed.add({0.005, 0.002, 0.0001}, {}, r, 300);   // pokes 0.0003 out of z_min
+  bed.add({0.002, 0.002, 0.0500}, {}, r, 300);   // centre on z_max
+  bed.add({0.00039, 0.002, 0.025}, {}, r, 300);  // overlaps x_min, a contact wall: stays
   const Enclosure e = make_enclosure(bed, bed.box);
   const Box stretched{{0, 0, 0.0001 - r * (1 + 1e-6)}, {0.010, 0.004, 0.0500 + r * (1 + 1e-6)}};
   EXPECT_NEAR(wall_area(e), surface(stretched), 1e-15);

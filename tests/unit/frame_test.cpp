@@ -50,8 +50,8 @@ Bed random_bed(std::size_t n) {
   auto uniform = [k = std::uint64_t{0}]() mutable { return random_uniform2(7, 1, k++)[0]; };
   for (std::size_t i = 0; i < n; ++i) {
     bed.next_id += i % 3;  // gaps in the ids
-    bed.add({uniform(), -uniform(), uniform() * 1e-300}, {uniform(), 0.0, -0.0}, uniform() + 1e-9, 300 + uniform(),
-            static_cast<std::int32_t>(i % 2));
+    bed.add({uniform(), -uniform(), uniform() * 1e-300}, {uniform(), 0.0, -0.0}, uniform() + 1e-9,
+            300 + uniform(), static_cast<std::int32_t>(i % 2));
     bed.angular_velocity_rad_s.back() = {uniform(), uniform(), 1 / 3.0};
     bed.radiative_heat_W.back() = -uniform();
     if (i > 0) bed.contacts.push_back({bed.id[i - 1], bed.id[i], {uniform() * 1e-9, 0, 0}});
@@ -137,7 +137,8 @@ TEST_F(Frame, HoldsTheVtkStructureViewersRead) {
   EXPECT_EQ(in.read<std::int64_t>("/VTKHDF/Connectivity"), (std::vector<std::int64_t>{0, 1, 2, 3, 4}));
   EXPECT_EQ(in.read<std::uint8_t>("/VTKHDF/Types"), std::vector<std::uint8_t>(5, 1));
   EXPECT_EQ(in.read<double>("/VTKHDF/Points", 3).size(), 15u);
-  for (const char* name : {"id", "radius", "temperature", "velocity", "angular_velocity", "q_rad", "material", "h"})
+  for (const char* name :
+       {"id", "radius", "temperature", "velocity", "angular_velocity", "q_rad", "material", "h"})
     EXPECT_TRUE(in.has(std::string("/VTKHDF/PointData/") + name)) << name;
   EXPECT_FALSE(in.text_attribute("/granrad", "git_sha").empty());
 }
@@ -155,8 +156,8 @@ TEST_F(Frame, TruncatedOrDamagedFilesAreRefused) {
     std::ofstream(bad, std::ios::binary) << bytes.substr(0, static_cast<std::size_t>(part * bytes.size()));
     EXPECT_THROW(read_snapshot(bad), Error) << part;
   }
-  // A flipped bit is either noticed (checksums of data and metadata) or stands in unused space: never a crash, never
-  // another bed.
+  // A flipped bit is either noticed (checksums of data and metadata) or stands in unused space: never a
+  // crash, never another bed.
   const Bed bed = read_frame(good).bed;
   int noticed = 0;
   const int trials = 150;
@@ -205,7 +206,8 @@ TEST_F(Frame, ACrashedWriteLeavesTheOldFrame) {
 
 TEST_F(Frame, SeriesNamesFramesRelativeToItself) {
   fs::create_directories(folder_ / "frames");
-  write_series(folder_ / "run.hdf.series", {{folder_ / "frames/f_0.hdf", 0.0}, {folder_ / "frames/f_1.hdf", 0.25}});
+  write_series(folder_ / "run.hdf.series",
+               {{folder_ / "frames/f_0.hdf", 0.0}, {folder_ / "frames/f_1.hdf", 0.25}});
   const std::string text = read_bytes(folder_ / "run.hdf.series");
   EXPECT_NE(text.find("\"file-series-version\": \"1.0\""), text.npos) << text;
   EXPECT_NE(text.find("\"name\": \"frames/f_1.hdf\""), text.npos) << text;

@@ -1,4 +1,5 @@
-// Particles and walls come in from CSV, LIGGGHTS and LAMMPS dumps and STL, and bad files are refused line by line.
+// Particles and walls come in from CSV, LIGGGHTS and LAMMPS dumps and STL, and bad files are refused line by
+// line.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +24,9 @@ class Import : public testing::Test {
     std::ofstream(folder_ / name, std::ios::binary) << text;
     return folder_ / name;
   }
-  Bed read(const std::string& text, double radius_m = 0) const { return read_snapshot(write(text), radius_m).bed; }
+  Bed read(const std::string& text, double radius_m = 0) const {
+    return read_snapshot(write(text), radius_m).bed;
+  }
   /// Problems of a bad file, each without the name of the file.
   std::vector<std::string> problems_of(const std::string& text, double radius_m = 0) const {
     try {
@@ -43,8 +46,9 @@ class Import : public testing::Test {
 };
 
 TEST_F(Import, CsvColumnsComeInAnyOrder) {
-  const Bed bed = read("\xEF\xBB\xBF# a comment\r\n radius, z ,y,x,color,vy,omegaz,temperature\r\n"
-                       "4e-4,3,2,1,blue,0.5,7,310\r\n\r\n+5e-4,-3,2,1e-3,,0,0,320");
+  const Bed bed = read(
+      "\xEF\xBB\xBF# a comment\r\n radius, z ,y,x,color,vy,omegaz,temperature\r\n"
+      "4e-4,3,2,1,blue,0.5,7,310\r\n\r\n+5e-4,-3,2,1e-3,,0,0,320");
   ASSERT_EQ(bed.size(), 2u);
   EXPECT_EQ(bed.id, (std::vector<std::int64_t>{1, 2}));
   EXPECT_EQ(bed.position_m[0], (Vec3{1, 2, 3}));
@@ -64,7 +68,8 @@ TEST_F(Import, BadCsvIsRefusedLineByLine) {
   const std::string header = "id,x,y,z,radius,temperature\n";
   EXPECT_EQ(problem_of(""), ": is empty; its first line must be x,y,z,radius");
   EXPECT_EQ(problem_of("x,y,radius\n"), ":1: no column z (columns are x, y, radius)");
-  EXPECT_EQ(problem_of("x,y,z\n1,2,3\n"), ":1: no column radius (columns are x, y, z) add it, or give the radius of all particles");
+  EXPECT_EQ(problem_of("x,y,z\n1,2,3\n"),
+            ":1: no column radius (columns are x, y, z) add it, or give the radius of all particles");
   EXPECT_EQ(problem_of("x,x,y,z,radius\n"), ":1: column x is given twice");
   EXPECT_EQ(problem_of(header + "1,0,0,0,1,300\n2,0,abc,0,1,300\n"), ":3: y = abc (must be a finite number)");
   EXPECT_EQ(problem_of(header + "1,0,,0,1,300\n"), ":2: y = nothing (must be a finite number)");
@@ -75,7 +80,8 @@ TEST_F(Import, BadCsvIsRefusedLineByLine) {
   EXPECT_EQ(problem_of(header + "1,0,0,0,1,-3\n"), ":2: temperature = -3 (must be > 0)");
   EXPECT_EQ(problem_of(header + "1.5,0,0,0,1,300\n"), ":2: id = 1.5 (must be a whole number >= 0)");
   EXPECT_EQ(problem_of(header + "1,0,0,0,1\n"), ":2: 5 values (the header names 6 columns)");
-  EXPECT_EQ(problem_of(header + "4,0,0,0,1,300\n4,1,0,0,1,300\n"), ":3: id = 4 (also on line 2) ids must differ");
+  EXPECT_EQ(problem_of(header + "4,0,0,0,1,300\n4,1,0,0,1,300\n"),
+            ":3: id = 4 (also on line 2) ids must differ");
   EXPECT_EQ(problem_of("\x1f\x8b garbage"), ": is compressed; unpack it first (gunzip)");
   std::string many = header;
   for (int k = 0; k < 25; ++k) many += "1,0,0,bad,1,300\n";
@@ -91,8 +97,9 @@ const std::string dump_head =
     "ITEM: TIMESTEP\n700\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp ff ff\n0 2\n-1 1\n0 4\n";
 
 TEST_F(Import, DumpColumnsComeByName) {
-  const Bed bed = read(dump_head + "ITEM: ATOMS id type x y z vx vy vz radius f_Temp[0] c_cn \n"
-                                   "9 1 0.5 0.1 1 1 2 3 0.1 320 4\n2 1 1.5 0.1 1 0 0 0 0.2 310 4\n");
+  const Bed bed = read(dump_head +
+                       "ITEM: ATOMS id type x y z vx vy vz radius f_Temp[0] c_cn \n"
+                       "9 1 0.5 0.1 1 1 2 3 0.1 320 4\n2 1 1.5 0.1 1 0 0 0 0.2 310 4\n");
   EXPECT_EQ(bed.id, (std::vector<std::int64_t>{2, 9}));
   EXPECT_EQ(bed.radius_m, (std::vector<double>{0.2, 0.1}));
   EXPECT_EQ(bed.temperature_K, (std::vector<double>{310, 320}));
@@ -106,8 +113,10 @@ TEST_F(Import, DumpColumnsComeByName) {
   EXPECT_EQ(scaled.position_m[1], (Vec3{0, -1, 4}));
   EXPECT_EQ(read(dump_head + "ITEM: ATOMS id xu yu zu\n1 2.5 0 0\n2 0 0 1\n", 0.1).position_m[0].x, 2.5);
   const std::string first = dump_head + "ITEM: ATOMS id x y z\n1 0 0 0\n2 0 0 1\n";
-  const Bed last = read(first + "ITEM: TIME\n0.7\n" + "ITEM: TIMESTEP\n800\nITEM: NUMBER OF ATOMS\n1\n"
-                        "ITEM: BOX BOUNDS ff ff ff\n0 2\n-1 1\n0 4\nITEM: ATOMS id x y z\n5 0 0 3\n", 0.1);
+  const Bed last = read(first + "ITEM: TIME\n0.7\n" +
+                            "ITEM: TIMESTEP\n800\nITEM: NUMBER OF ATOMS\n1\n"
+                            "ITEM: BOX BOUNDS ff ff ff\n0 2\n-1 1\n0 4\nITEM: ATOMS id x y z\n5 0 0 3\n",
+                        0.1);
   EXPECT_EQ(last.id, std::vector<std::int64_t>{5}) << "the last snapshot of the file";
   EXPECT_EQ(last.step, 800);
   EXPECT_EQ(last.time_s, 0.7);
@@ -117,20 +126,26 @@ TEST_F(Import, BadDumpsAreRefused) {
   const std::string atoms = "ITEM: ATOMS id x y z radius\n";
   EXPECT_EQ(problem_of("ITEM: TIMESTEP\n1\n"), ": holds no snapshot (no \"ITEM: ATOMS\")");
   EXPECT_EQ(problem_of(dump_head + atoms + "1 0 0 0 1\n"), ":10: the snapshot is cut short: 1 of 2 atoms");
-  EXPECT_EQ(problem_of(dump_head + atoms + "1 0 0 0 1\n2 0 0\n"), ":11: 3 values (the header names 5 columns)");
-  EXPECT_EQ(problem_of(dump_head + atoms + "1 0 0 0 1\n2 0 0 nan 1\n"), ":11: z = nan (must be a finite number)");
+  EXPECT_EQ(problem_of(dump_head + atoms + "1 0 0 0 1\n2 0 0\n"),
+            ":11: 3 values (the header names 5 columns)");
+  EXPECT_EQ(problem_of(dump_head + atoms + "1 0 0 0 1\n2 0 0 nan 1\n"),
+            ":11: z = nan (must be a finite number)");
   EXPECT_EQ(problem_of(dump_head + atoms + "1 0 0 0 1\n2 0 0 1 1\n3 0 0 2 1\n"),
             ":12: \"3 0 0 2 1\" (expected a line that starts with \"ITEM: \")");
   EXPECT_EQ(problem_of(dump_head + "ITEM: ATOMS id x y z\n1 0 0 0\n2 0 0 1\n"),
             ":9: no column radius (columns are id, x, y, z) add it, or give the radius of all particles");
   EXPECT_EQ(problem_of("ITEM: ATOMS id x y z\n"), ":1: ITEM: ATOMS stands before ITEM: NUMBER OF ATOMS");
-  EXPECT_EQ(problem_of("ITEM: NUMBER OF ATOMS\nmany\n"), ":2: the number of atoms = \"many\" (must be a number >= 0)");
-  EXPECT_EQ(problem_of("ITEM: BOX BOUNDS xy xz yz pp pp pp\n0 1 0\n"), ":1: the box is tilted (only upright boxes are read)");
-  EXPECT_EQ(problem_of("ITEM: BOX BOUNDS pp pp pp\n2 1\n"), ":2: \"2 1\" (box bounds must be two rising numbers)");
+  EXPECT_EQ(problem_of("ITEM: NUMBER OF ATOMS\nmany\n"),
+            ":2: the number of atoms = \"many\" (must be a number >= 0)");
+  EXPECT_EQ(problem_of("ITEM: BOX BOUNDS xy xz yz pp pp pp\n0 1 0\n"),
+            ":1: the box is tilted (only upright boxes are read)");
+  EXPECT_EQ(problem_of("ITEM: BOX BOUNDS pp pp pp\n2 1\n"),
+            ":2: \"2 1\" (box bounds must be two rising numbers)");
 }
 
 TEST_F(Import, TheReferenceDumpIsRead) {
-  const Bed bed = read_snapshot(std::string(GRANRAD_SOURCE_DIR) + "/data/reference/snapshot_outlet_4x4.dump", 4e-4).bed;
+  const Bed bed =
+      read_snapshot(std::string(GRANRAD_SOURCE_DIR) + "/data/reference/snapshot_outlet_4x4.dump", 4e-4).bed;
   EXPECT_EQ(bed.size(), 10376u);
   EXPECT_EQ(bed.step, 130000);
   EXPECT_EQ(bed.radius_m[0], 4e-4);
@@ -142,7 +157,8 @@ TEST_F(Import, TheReferenceDumpIsRead) {
 }
 
 std::string facet(const std::string& a, const std::string& b, const std::string& c) {
-  return "facet normal 0 0 0\nouter loop\nvertex " + a + "\nvertex " + b + "\nvertex " + c + "\nendloop\nendfacet\n";
+  return "facet normal 0 0 0\nouter loop\nvertex " + a + "\nvertex " + b + "\nvertex " + c +
+         "\nendloop\nendfacet\n";
 }
 
 TEST_F(Import, StlKeepsSolidsAndMergesVertices) {
@@ -177,11 +193,14 @@ TEST_F(Import, BadStlIsRefused) {
   EXPECT_THROW(import_stl(write("hello", "text.stl"), 1, "w"), InputError);
   EXPECT_THROW(import_stl(write("", "empty.stl"), 1, "w"), InputError);
   try {
-    import_stl(write("solid a\n" + facet("0 0 0", "1 0 0", "0 1 0") + facet("0 0 0", "1 0 0", "2 0 0") + "endsolid a\n",
-                     "flat.stl"), 1, "w");
+    import_stl(write("solid a\n" + facet("0 0 0", "1 0 0", "0 1 0") + facet("0 0 0", "1 0 0", "2 0 0") +
+                         "endsolid a\n",
+                     "flat.stl"),
+               1, "w");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("1 of 2 triangles have no area, first number 2"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("1 of 2 triangles have no area, first number 2"),
+              std::string::npos)
         << error.what();
   }
 }

@@ -1,4 +1,5 @@
-// All pairs of surfaces within a gap are found, each once, sorted, with their exact distances: against brute force.
+// All pairs of surfaces within a gap are found, each once, sorted, with their exact distances: against brute
+// force.
 #include "dem/near_pairs.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +23,8 @@ Bed random_bed(std::size_t n, const Box& box, const std::array<bool, 3>& periodi
   bed.periodic = periodic;
   bed.materials.resize(1);
   for (std::size_t i = 0; i < n; ++i) {
-    const auto u = random_uniform2(seed, 0, i), v = random_uniform2(seed, 1, i), w = random_uniform2(seed, 2, i);
+    const auto u = random_uniform2(seed, 0, i), v = random_uniform2(seed, 1, i),
+               w = random_uniform2(seed, 2, i);
     Vec3 p = box.min + Vec3{u[0] * box.size().x, u[1] * box.size().y, v[0] * box.size().z};
     for (int axis = 0; axis < 3; ++axis)
       if (periodic[axis]) p[axis] += (static_cast<int>(i) % 5 - 2) * box.size()[axis];
@@ -60,7 +62,8 @@ void expect_brute_force(const Bed& bed, double gap) {
   EXPECT_GT(k, 0u);
 }
 
-// Planted error that this catches: cells visited from -1 to 0 only; a period cut into two cells visited twice.
+// Planted error that this catches: cells visited from -1 to 0 only; a period cut into two cells visited
+// twice.
 TEST(NearPairs, MatchBruteForce) {
   const Box box{{-1, 2, 0}, {1, 3, 1.5}};
   for (const std::array<bool, 3>& periodic :

@@ -49,20 +49,25 @@ TEST(TomlReader, ConvertsUnitsToSI) {
 }
 
 TEST(TomlReader, RefusesWrongNumbers) {
-  EXPECT_EQ(number_problem("\"1 kg\"", {.unit = "m"}), "f.toml:1:5: v = \"1 kg\" ('kg' cannot be converted to m)");
+  EXPECT_EQ(number_problem("\"1 kg\"", {.unit = "m"}),
+            "f.toml:1:5: v = \"1 kg\" ('kg' cannot be converted to m)");
   EXPECT_EQ(number_problem("\"1 furlogn\"", {.unit = "m"}),
             "f.toml:1:5: v = \"1 furlogn\" ('furlogn' is not a unit; expected one of the kind of m)");
   EXPECT_EQ(number_problem("\"0.8\"", {.unit = "m"}),
             "f.toml:1:5: v = \"0.8\" (has no unit: write the number without quotes for m, or add the unit)");
   EXPECT_EQ(number_problem("nan", {}), "f.toml:1:5: v = nan (must be a finite number)");
   EXPECT_EQ(number_problem("-inf", {}), "f.toml:1:5: v = -inf (must be a finite number)");
-  EXPECT_EQ(number_problem("\"inf m\"", {.unit = "m"}), "f.toml:1:5: v = \"inf m\" = inf m (must be a finite number)");
-  EXPECT_EQ(number_problem("true", {.unit = "m", .min = 0}), "f.toml:1:5: v = true (must be a number >= 0 m)");
+  EXPECT_EQ(number_problem("\"inf m\"", {.unit = "m"}),
+            "f.toml:1:5: v = \"inf m\" = inf m (must be a finite number)");
+  EXPECT_EQ(number_problem("true", {.unit = "m", .min = 0}),
+            "f.toml:1:5: v = true (must be a number >= 0 m)");
   EXPECT_EQ(number_problem("[1]", {}), "f.toml:1:5: v: must be a number");
   EXPECT_EQ(number_problem("1.4", {.min = 0, .max = 1, .min_exclusive = true, .why = "grey diffuse surface"}),
             "f.toml:1:5: v = 1.4 (must be in (0, 1]: grey diffuse surface)");
-  EXPECT_EQ(number_problem("0", {.unit = "m", .min = 0, .min_exclusive = true}), "f.toml:1:5: v = 0 (must be > 0 m)");
-  EXPECT_EQ(number_problem("\"-2 mm\"", {.unit = "m", .min = 0}), "f.toml:1:5: v = \"-2 mm\" = -0.002 m (must be >= 0 m)");
+  EXPECT_EQ(number_problem("0", {.unit = "m", .min = 0, .min_exclusive = true}),
+            "f.toml:1:5: v = 0 (must be > 0 m)");
+  EXPECT_EQ(number_problem("\"-2 mm\"", {.unit = "m", .min = 0}),
+            "f.toml:1:5: v = \"-2 mm\" = -0.002 m (must be >= 0 m)");
 }
 
 TEST(TomlReader, BadValuesLeaveAPlaceholderInsideTheBounds) {
@@ -78,7 +83,8 @@ TEST(TomlReader, BadValuesLeaveAPlaceholderInsideTheBounds) {
 
 TEST(TomlReader, ReportsUnknownKeysWithTheClosestKnownOne) {
   auto document = TomlDocument::from_string(
-      "[radiation]\nsource = 'paths'\nradiaton_every = 1\n[radation]\nrays = 2\n[dem]\nrays = 3\nzzz = 1\n", "f.toml");
+      "[radiation]\nsource = 'paths'\nradiaton_every = 1\n[radation]\nrays = 2\n[dem]\nrays = 3\nzzz = 1\n",
+      "f.toml");
   auto radiation = document.root().table("radiation");
   radiation.string("source");
   radiation.number("radiation_every", {}, 1);
@@ -106,7 +112,8 @@ TEST(TomlReader, ReportsMissingKeysAndTablesOnce) {
 
 TEST(TomlReader, ReadsEveryKindOfValue) {
   auto document = TomlDocument::from_string(
-      "n = 1e4\nb = true\nc = 'two'\nv = ['1 mm', 2, 3]\nl = [1, 2]\np = [[0,0,0],[1,0,0],[0,1,0]]\ns = ['x']\n"
+      "n = 1e4\nb = true\nc = 'two'\nv = ['1 mm', 2, 3]\nl = [1, 2]\np = [[0,0,0],[1,0,0],[0,1,0]]\ns = "
+      "['x']\n"
       "[[polygon]]\nname = 'a'\n[[polygon]]\nname = 'b'\n",
       "f.toml");
   auto root = document.root();
@@ -127,7 +134,8 @@ TEST(TomlReader, ReadsEveryKindOfValue) {
 
 TEST(TomlReader, RefusesWrongKindsOfValue) {
   auto document = TomlDocument::from_string(
-      "n = 1.5\nb = 1\nc = 'tow'\nv = [1, 2]\nl = 3\ns = 5\nt = 1\np = [1]\nf = 'none.csv'\nk = 7\n", "f.toml");
+      "n = 1.5\nb = 1\nc = 'tow'\nv = [1, 2]\nl = 3\ns = 5\nt = 1\np = [1]\nf = 'none.csv'\nk = 7\n",
+      "f.toml");
   auto root = document.root();
   root.integer("n", 0, 9);
   root.boolean("b");
@@ -189,8 +197,7 @@ TEST(TomlReader, OverridesReplaceMergeAndAreLocated) {
   bad.override_value("p[3].r=1");
   bad.root().table("a").number("x", {.min = 0});
   const std::vector<std::string> expected{
-      "--set a.typo=2: unknown key 'typo' in [a]. Known here: x",
-      "--set a.x=-1: a.x = -1 (must be >= 0)",
+      "--set a.typo=2: unknown key 'typo' in [a]. Known here: x", "--set a.x=-1: a.x = -1 (must be >= 0)",
       "--set nonsense: must be key=value, for example radiation.rays=1000",
       "--set p[3].r=1: there is no [[p[3]]] in f.toml"};
   EXPECT_EQ(problems_of(bad), expected);
@@ -221,9 +228,9 @@ TEST(TomlReader, ProblemsOfOthersAreLocatedSortedAndNotRepeated) {
   document.problem("a.none", "is needed");
   document.problem("", "of the whole");
   document.root().table("a").problem("x", "= 1 m (shown by the caller)");
-  const std::vector<std::string> expected{"f.toml: of the whole", "f.toml:1:1: a.none: is needed",
-                                          "f.toml:2:5: a.x = 1 m (shown by the caller)",
-                                          "f.toml:3:2: unknown table [b]. Known here: a", "f.toml:4:5: b.y = 2 (too small)"};
+  const std::vector<std::string> expected{
+      "f.toml: of the whole", "f.toml:1:1: a.none: is needed", "f.toml:2:5: a.x = 1 m (shown by the caller)",
+      "f.toml:3:2: unknown table [b]. Known here: a", "f.toml:4:5: b.y = 2 (too small)"};
   EXPECT_EQ(problems_of(document), expected);
 }
 

@@ -1,0 +1,54 @@
+#include <fmt/core.h>
+
+#include "dem/scene/error.h"
+#include "dem/scene/program.h"
+#include "fit/vfgen_commands.h"
+
+namespace granrad {
+
+namespace {
+
+/// FILE.h5, or FILE_0003.h5 for the third of several.
+std::filesystem::path numbered(const std::filesystem::path& file, std::size_t number, std::size_t count) {
+  if (count == 1) return file;
+  auto name = file;
+  name.replace_filename(fmt::format("{}_{:04}{}", file.stem().string(), number, file.extension().string()));
+  return name;
+}
+
+void require_surfaces(const Enclosure& enclosure, const std::filesystem::path& snapshot) {
+  if (enclosure.sphere_count() == 0 && enclosure.walls.empty())
+    throw InputError(fmt::format("{}: no surface to trace (neither particles nor walls) add walls with --box",
+                                 snapshot.string()));
+}
+
+}  // namespace
+
+int run_trace(const TraceCommand& command, Verbosity verbosity) {
+  if (command.output.extension() != ".h5")
+    throw InputError(
+        fmt::format("--output: {} (view factors are HDF5) name it FILE.h5", command.output.string()));
+  std::string failures;
+  Progress progress("tracing", static_cast<double>(command.snapshots.size()),
+                    verbosity.quiet() || command.snapshots.size() == 1);
+  for (std::size_t k = 0; k < command.snapshots.size() && !interrupt_signal(); ++k) {
+    const auto& snapshot = command.snapshots[k];
+    const auto read = read_enclosure(snapshot, command.enclosure);
+    require_surfaces(read.enclosure, snapshot);
+    if (read.left_out > 0)
+      fmt::print(stderr, "{}: {} particles with their centre outside the box were left out\n",
+                 snapshot.string(), read.left_out);
+    const auto traced = trace(read.enclosure, command.trace, snapshot.string());
+    const auto file = numbered(command.output, k + 1, command.snapshots.size());
+    write_view_factors(file, traced);
+    if (!verbosity.quiet())
+      fmt::print("{}: {} spheres, {} walls; {}\n", file.string(), read.enclosure.sphere_count(),
+                 read.enclosure.walls.size(), self_check_line(traced.check));
+    if (!traced.check.failed.empty()) failures += fmt::format("\n{}: {}", file.string(), traced.check.failed);
+    progress.update(static_cast<double>(k + 1));
+  }
+  if (!failures.empty()) throw NumericalError("self-check failed:" + failures);
+  return exit_ok;
+}
+
+}  // namespace granrad

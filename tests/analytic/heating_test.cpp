@@ -1,0 +1,144 @@
+// Requirement: a lone black sphere heats as dT/dt = A sigma (T_w^4 - T^4)/(m c) says, to first order in the
+// step. Planted: 2 pi r^2 for the area of a sphere (88 K too cold); trapezoidal instead of Euler (order 2).
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "coupling/energy_ledger.h"
+#include "coupling/heat_step.h"
+#include "coupling/radiosity_source.h"
+#include "dem/scene/constants.h"
+#include "raytrace/path_source.h"
+
+namespace granrad {
+namespace {
+
+constexpr double wall_K = 1000, size = 0.01;
+
+Bed lone_sphere(double emissivity = 1) {
+  Bed bed;
+  Material m;
+  m.density_kg_m3 = 3984;
+  m.specific_heat_J_kgK = 755;
+  m.emissivity = emissivity;
+  bed.materials = {m};
+  bed.box = {{0, 0, 0}, {size, size, size}};
+  for (auto wall : box_walls(bed.box)) {
+    wall.role = WallRole::isothermal;
+    wall.temperature_K = wall_K;
+    bed.walls.push_back(wall);
+  }
+  bed.add({0.004, 0.005, 0.006}, {}, 4e-4, 300);
+  return bed;
+}
+
+RadiativeState state_of(const Bed& bed) {
+  RadiativeState s;
+  s.temperature_K = {bed.temperature_K[0]};
+  s.emissivity = {bed.materials[0].emissivity};
+  s.role = {WallRole::isothermal};
+  for (const auto& wall : bed.walls) {
+    s.temperature_K.push_back(wall.temperature_K);
+    s.emissivity.push_back(wall.emissivity);
+    s.role.push_back(wall.role);
+  }
+  s.temperature_K.push_back(300);
+  s.emissivity.push_back(1);
+  s.role.push_back(WallRole::open);
+  return s;
+}
+
+/// The sphere sees the walls by sixths and the walls see the sphere and themselves: closed as given.
+ExchangeAreas sphere_in_box(const Enclosure& enclosure, std::uint64_t) {
+  const auto area = surface_areas(enclosure);
+  ExchangeAreas X;
+  X.area_m2 = area;
+  X.pattern.row_begin = {0};
+  for (int i = 0; i < 8; ++i) {
+    for (int j = 0; j < 8; ++j) {
+      const bool outside = i == 7 || j == 7, ball = i == 0 || j == 0;
+      if (outside || (i == 0 && j == 0)) continue;
+      X.pattern.column.push_back(j);
+      X.value.push_back(ball ? area[0] / 6 : (area[1] - area[0] / 6) / 6);
+    }
+    X.pattern.row_begin.push_back(static_cast<std::int64_t>(X.value.size()));
+  }
+  return X;
+}
+
+double temperature_after_2_s(ExchangeSource& source, double dt_s) {
+  Bed bed = lone_sphere();
+  const Enclosure enclosure = make_enclosure(bed, bed.box);
+  const auto steps = std::lround(2 / dt_s);
+  for (long k = 0; k < steps; ++k) {
+    bed.radiative_heat_W[0] =
+        source.net_heat(enclosure, state_of(bed), static_cast<std::uint64_t>(k)).heat_W[0];
+    advance_temperatures(bed, {}, dt_s);
+  }
+  return bed.temperature_K[0];
+}
+
+/// Time to reach T: (m c / A sigma) [ln((w + T)/(w - T))/(4 w^3) + atan(T/w)/(2 w^3)] between 300 K and T.
+double exact_after_2_s() {
+  const double scale = 4e-4 / 3 * 3984 * 755 / stefan_boltzmann;
+  const auto time = [&](double T) {
+    return scale / std::pow(wall_K, 3) *
+           (0.25 * std::log((wall_K + T) / (wall_K - T)) + 0.5 * std::atan(T / wall_K));
+  };
+  double low = 300, high = wall_K;
+  for (int k = 0; k < 200; ++k) {
+    const double middle = 0.5 * (low + high);
+    (time(middle) - time(300) < 2 ? low : high) = middle;
+  }
+  return low;
+}
+
+TEST(Heating, OfALoneBlackSphereIsTheClosedFormToFirstOrder) {
+  const double exact = exact_after_2_s();
+  EXPECT_NEAR(exact, 570.4156, 5e-5);
+  RadiositySource source(sphere_in_box, Closure::reciprocal);
+  const double at_10_ms = temperature_after_2_s(source, 0.01) - exact;
+  EXPECT_NEAR(at_10_ms / exact, 0, 1e-4);
+  const double at_20_ms = temperature_after_2_s(source, 0.02) - exact;
+  const double at_40_ms = temperature_after_2_s(source, 0.04) - exact;
+  EXPECT_NEAR(std::log2(at_20_ms / at_10_ms), 1, 0.05);
+  EXPECT_NEAR(std::log2(at_40_ms / at_20_ms), 1, 0.05);
+}
+
+// In a black isothermal box every walk of the sphere ends on a wall: paths heat it without noise.
+TEST(Heating, ByPathsIsTheSame) {
+  RadiositySource areas(sphere_in_box, Closure::reciprocal);
+  PathOptions options;
+  options.walks = 3200;
+  options.wall_share = 0;
+  PathSource paths(options);
+  EXPECT_NEAR(temperature_after_2_s(paths, 0.01) / temperature_after_2_s(areas, 0.01), 1, 1e-9);
+}
+
+TEST(Heating, TimeConstantIsTheShortest) {
+  const Bed bed = lone_sphere(0.5);
+  const double tau = 4e-4 * 3984 * 755 / (3 * 4 * 0.5 * stefan_boltzmann * std::pow(wall_K, 3));
+  EXPECT_NEAR(radiation_time_constant_s(bed) / tau, 1, 1e-12);
+  EXPECT_TRUE(std::isinf(radiation_time_constant_s(Bed{})));
+}
+
+TEST(Heating, LinearisedHeatsNeverOvershoot) {
+  RadiositySource source(sphere_in_box, Closure::reciprocal);
+  Bed bed = lone_sphere();
+  bed.temperature_K[0] = 1500;
+  const Enclosure enclosure = make_enclosure(bed, bed.box);
+  const double dt = 5 * radiation_time_constant_s(bed);
+  double before = 1500;
+  for (int k = 0; k < 60; ++k) {
+    bed.radiative_heat_W[0] = source.net_heat(enclosure, state_of(bed), 0).heat_W[0];
+    linearise_radiative_heat(bed, dt);
+    advance_temperatures(bed, {}, dt);
+    ASSERT_LE(bed.temperature_K[0], before);
+    ASSERT_GE(bed.temperature_K[0], wall_K * (1 - 1e-12));
+    before = bed.temperature_K[0];
+  }
+  EXPECT_NEAR(before, wall_K, 1e-3);
+}
+
+}  // namespace
+}  // namespace granrad

@@ -1,0 +1,146 @@
+#pragma once
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace granrad::cli {
+
+namespace fs = std::filesystem;
+
+/// A folder of its own for each test, gone afterwards.
+class Scratch {
+ public:
+  Scratch() {
+    std::string name = (fs::temp_directory_path() / "granrad_cli_XXXXXX").string();
+    root = mkdtemp(name.data());
+  }
+  ~Scratch() { fs::remove_all(root); }
+  Scratch(const Scratch&) = delete;
+
+  fs::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(root / name) << text;
+    return root / name;
+  }
+  fs::path root;
+};
+
+inline std::string content(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+struct Outcome {
+  int code = -1;  ///< exit code; 128 + signal when killed
+  std::string out, err;
+};
+
+inline int exit_code(int status) {
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+/// Runs a program of the build with arguments as a shell would read them.
+inline Outcome run(const Scratch& scratch, const std::string& program, const std::string& arguments) {
+  const auto out = scratch.root / "stdout.txt", err = scratch.root / "stderr.txt";
+  const std::string command = std::string(GRANRAD_BIN_DIR) + "/" + program + " " + arguments + " >" +
+                              out.string() + " 2>" + err.string() + " </dev/null";
+  Outcome result;
+  result.code = exit_code(std::system(command.c_str()));
+  result.out = content(out);
+  result.err = content(err);
+  return result;
+}
+
+inline Outcome granrun(const Scratch& scratch, const std::string& arguments) {
+  return run(scratch, "granrun", arguments);
+}
+
+/// Starts granrun without waiting; the caller signals and waits for the process number returned.
+inline pid_t start_granrun(const std::vector<std::string>& arguments) {
+  const pid_t child = fork();
+  if (child != 0) return child;
+  std::string program = std::string(GRANRAD_BIN_DIR) + "/granrun";
+  std::vector<char*> argv{program.data()};
+  std::vector<std::string> copies = arguments;
+  for (auto& argument : copies) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  if (!std::freopen("/dev/null", "w", stdout) || !std::freopen("/dev/null", "w", stderr)) _exit(126);
+  execv(program.c_str(), argv.data());
+  _exit(127);
+}
+
+/// A small plug flow (about 40 particles) that exercises everything: feed, contacts, gas, paths.
+inline const char* small_plug = R"([scene]
+name = "small plug"
+end_time_s = 0.04
+[material]
+density_kg_m3 = 3984
+specific_heat_J_kgK = 755
+conductivity_W_mK = 33
+youngs_modulus_Pa = 5e6
+real_youngs_modulus_Pa = 414e9
+poisson_ratio = 0.23
+restitution = 0.45
+friction = 0.4
+[gas]
+[particles]
+diameter_m = "0.8 mm"
+temperature_K = 300
+[box]
+size_m = [0.004, 0.003, 0.006]
+[walls.x_min]
+role = "adiabatic"
+[walls.x_max]
+role = "adiabatic"
+[walls.y_min]
+role = "isothermal"
+temperature_K = 1000
+[walls.y_max]
+role = "isothermal"
+temperature_K = 1000
+[walls.z_min]
+role = "adiabatic"
+[walls.z_max]
+role = "adiabatic"
+[feed]
+kind = "plug"
+solid_fraction = 0.25
+velocity_m_s = 0.1
+transverse_velocity_std_m_s = 0.02
+seed = 3
+[dem]
+step_s = 1e-5
+[radiation]
+source = "paths"
+rays = 500
+every_s = 0.002
+[output]
+every_s = 0.004
+frames_every_s = 0.008
+)";
+
+/// small_plug with one piece of text replaced (every occurrence).
+inline std::string edited(std::string text, const std::string& from, const std::string& to) {
+  EXPECT_NE(text.find(from), std::string::npos) << from;
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+/// The last frame of a case.
+inline fs::path last_frame(const fs::path& folder) {
+  fs::path last;
+  for (const auto& entry : fs::directory_iterator(folder / "frames"))
+    if (entry.path().extension() == ".hdf" && entry.path() > last) last = entry.path();
+  return last;
+}
+
+}  // namespace granrad::cli

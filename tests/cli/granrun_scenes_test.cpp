@@ -1,0 +1,35 @@
+// Requirement: every scene of data/scenes passes granrun check and runs, shortened.
+#include "granrun.h"
+
+using namespace granrad::cli;
+
+namespace {
+
+std::vector<fs::path> scenes() {
+  std::vector<fs::path> all;
+  for (const auto& entry : fs::directory_iterator(fs::path(GRANRAD_SOURCE_DIR) / "data/scenes"))
+    if (entry.path().extension() == ".toml") all.push_back(entry.path());
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+class Scene : public testing::TestWithParam<fs::path> {};
+
+}  // namespace
+
+TEST_P(Scene, PassesCheckAndRunsShortened) {
+  Scratch scratch;
+  const std::string scene = GetParam().string();
+  const auto check = granrun(scratch, "check " + scene);
+  ASSERT_EQ(check.code, 0) << check.err;
+  EXPECT_NE(check.out.find("step limits"), std::string::npos);
+  const auto folder = scratch.root / "case";
+  const auto outcome = granrun(scratch, "run " + scene + " -q -o " + folder.string() +
+                                            " --set scene.end_time_s=0.02 --set radiation.every_s=0.01"
+                                            " --set output.every_s=0.01 --set output.frames_every_s=0.02");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_FALSE(last_frame(folder).empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Data, Scene, testing::ValuesIn(scenes()),
+                         [](const auto& info) { return info.param.stem().string(); });

@@ -1,0 +1,53 @@
+// Requirement: granrun answers --help and --version, and refuses wrong usage with exit code 2 and a message
+// that helps.
+#include "granrun.h"
+
+using namespace granrad::cli;
+
+TEST(GranrunUsage, HelpAndVersionSucceed) {
+  Scratch scratch;
+  const auto help = granrun(scratch, "--help");
+  EXPECT_EQ(help.code, 0);
+  for (const char* word : {"run", "check", "validate", "sweep", "report", "export", "75"})
+    EXPECT_NE(help.out.find(word), std::string::npos) << word;
+  const auto version = granrun(scratch, "--version");
+  EXPECT_EQ(version.code, 0);
+  EXPECT_EQ(version.out.rfind("granrun ", 0), 0u);
+  EXPECT_EQ(granrun(scratch, "run --help").code, 0);
+}
+
+TEST(GranrunUsage, WrongUsageIsExitCode2) {
+  Scratch scratch;
+  const auto scene = scratch.write("plug.toml", small_plug).string();
+  for (const std::string& arguments :
+       {std::string(""), std::string("simulate"), std::string("run"), "run " + scene, std::string("run -o x"),
+        "run " + scene + " -o x --unknown", "check " + scene + " --threads 0",
+        "check " + scene + " --threads many", "run " + scene + " -o x --walltime 10",
+        "run " + scene + " -o x --walltime 00:61:00", "export " + scratch.root.string() + " --to png",
+        "report " + scratch.root.string(), "export " + scratch.root.string() + " --to vtp"}) {
+    const auto outcome = granrun(scratch, arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments << "\n" << outcome.err;
+    EXPECT_FALSE(outcome.out.empty() && outcome.err.empty()) << arguments;
+  }
+}
+
+TEST(GranrunUsage, MissingFilesAreExitCode3) {
+  Scratch scratch;
+  EXPECT_EQ(granrun(scratch, "check " + (scratch.root / "none.toml").string()).code, 3);
+}
+
+TEST(GranrunUsage, CheckSaysWhatIsModelledAndWhatIsNotAndWritesNothing) {
+  Scratch scratch;
+  const auto scene = scratch.write("plug.toml", small_plug).string();
+  const auto all = granrun(scratch, "check " + scene);
+  ASSERT_EQ(all.code, 0) << all.err;
+  for (const char* text :
+       {"gas lenses", "paths, 500 walks", "left out", "gravity", "Rayleigh time", "Hertz time", "DEM step",
+        "radiation update", "conduction allows", "walls isothermal: y_min, y_max"})
+    EXPECT_NE(all.out.find(text), std::string::npos) << text << "\n" << all.out;
+  const auto less =
+      granrun(scratch, "check " + scene + " --set radiation.source=none --set conduction.solid=false");
+  ASSERT_EQ(less.code, 0) << less.err;
+  EXPECT_NE(less.out.find("no enclosure is built"), std::string::npos);
+  EXPECT_NE(less.out.find("conduction.solid = false"), std::string::npos);
+}

@@ -1,0 +1,299 @@
+// Requirement: hard cases are computed right or refused with advice.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "dem/engine_native.h"
+#include "dem/scene/error.h"
+#include "dem/scene/random.h"
+#include "dem/step_limit.h"
+
+namespace granrad {
+namespace {
+
+constexpr double radius = 4e-4, g = 9.81;
+
+Material alumina() {
+  Material m;
+  m.density_kg_m3 = 3984, m.youngs_modulus_Pa = 5e6, m.poisson_ratio = 0.23, m.restitution = 0.45, m.friction = 0.4;
+  return m;
+}
+
+Bed empty_bed(const Material& m = alumina()) {
+  Bed bed;
+  bed.materials = {m};
+  return bed;
+}
+
+Bed two_spheres(const Material& m, double speed) {
+  Bed bed = empty_bed(m);
+  bed.add({-4.1e-4, 0, 0}, {speed, 0, 0}, radius, 300);
+  bed.add({4.1e-4, 0, 0}, {-speed, 0, 0}, radius, 300);
+  return bed;
+}
+
+double kinetic_energy(const Bed& bed) {
+  double sum = 0;
+  for (std::size_t i = 0; i < bed.size(); ++i) {
+    const Vec3 &v = bed.velocity_m_s[i], &w = bed.angular_velocity_rad_s[i];
+    sum += 0.5 * mass_kg(bed, i) * (dot(v, v) + 0.4 * bed.radius_m[i] * bed.radius_m[i] * dot(w, w));
+  }
+  return sum;
+}
+
+TEST(EngineStability, no_particle_one_particle) {
+  for (int n = 0; n < 2; ++n) {
+    Bed bed = empty_bed();
+    if (n) bed.add({0, 0, 0}, {0.1, 0, 0}, radius, 300);
+    make_native_engine(bed, {0, 0, -g}, 1e-5)->advance(bed, 0.01);
+    EXPECT_EQ(bed.step, 1000);
+    EXPECT_EQ(bed.time_s, 1000 * 1e-5);
+    if (n == 0) continue;
+    EXPECT_NEAR(bed.position_m[0].z, -0.5 * g * 1e-4, 1e-15);
+    EXPECT_NEAR(bed.velocity_m_s[0].z, -g * 0.01, 1e-14);
+  }
+}
+
+// Planted: ln e in place of e; a damping prefactor of another model.
+TEST(EngineStability, restitution_is_what_the_scene_says) {
+  for (const double e : {0.05, 0.45, 0.9, 1.0}) {
+    Material m = alumina();
+    m.restitution = e;
+    Bed bed = two_spheres(m, 0.05);
+    make_native_engine(bed, {}, 1e-7)->advance(bed, 2e-3);
+    EXPECT_NEAR(bed.velocity_m_s[1].x / 0.05, e, 5e-4) << e;
+  }
+}
+
+TEST(EngineStability, elastic_contact_lasts_the_hertz_time) {
+  Material m = alumina();
+  m.restitution = 1;
+  Bed bed = two_spheres(m, 0.05);
+  const double step = 2e-7;
+  const auto engine = make_native_engine(bed, {}, step);
+  int touching = 0;
+  for (int k = 1; k < 6000; ++k) {
+    engine->advance(bed, k * step);
+    touching += bed.position_m[1].x - bed.position_m[0].x < 2 * radius;
+  }
+  EXPECT_NEAR(touching * step / hertz_time_s(m, radius, 0.1), 1, 0.01);
+}
+
+TEST(EngineStability, stiffness_from_soft_to_hard) {
+  for (const double young : {5e5, 5e6, 5e7, 5e8, 5e9}) {
+    Material m = alumina();
+    m.youngs_modulus_Pa = young;
+    Bed bed = two_spheres(m, 0.05);
+    const double step = 0.02 * step_limit(bed).largest_step_s;
+    make_native_engine(bed, {}, step)->advance(bed, 3e-3);
+    EXPECT_NEAR(bed.velocity_m_s[1].x / 0.05, 0.45, 2e-3) << young;
+  }
+}
+
+// A sphere thrown along a floor: mu = 0 keeps sliding, mu = 2 rolls at once.
+TEST(EngineStability, friction_from_none_to_strong) {
+  for (const double mu : {0.0, 2.0}) {
+    Material m = alumina();
+    m.friction = mu;
+    Bed bed = empty_bed(m);
+    Wall floor;
+    floor.vertices = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    bed.walls = {floor};
+    bed.add({0, 0, 3.999e-4}, {0.1, 0, 0}, radius, 300);
+    make_native_engine(bed, {0, 0, -g}, 1e-5)->advance(bed, 0.1);
+    EXPECT_NEAR(bed.velocity_m_s[0].x, mu == 0 ? 0.1 : 0.1 * 5 / 7, 1e-4) << mu;
+    if (mu == 0) {
+      EXPECT_EQ(bed.angular_velocity_rad_s[0].y, 0);
+    }
+  }
+}
+
+// Rolling friction cdt brakes a rolling sphere by mu_r m g R / (I + m R^2) = 5/7 mu_r g / R of angular speed.
+TEST(EngineStability, rolling_friction_brakes_as_its_formula) {
+  Material m = alumina();
+  m.rolling_friction = 0.02;
+  Bed bed = empty_bed(m);
+  Wall floor;
+  floor.vertices = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  bed.walls = {floor};
+  const double young = 0.5 * 5e6 / (1 - 0.23 * 0.23), mass = 3984 * 2.680825731e-10;
+  const double delta = std::pow(mass * g / (4.0 / 3.0 * young * std::sqrt(radius)), 2.0 / 3.0);
+  bed.add({0, 0, radius - delta}, {0.1, 0, 0}, radius, 300);
+  bed.angular_velocity_rad_s[0] = {0, 0.1 / radius, 0};
+  make_native_engine(bed, {0, 0, -g}, 1e-5)->advance(bed, 0.1);
+  EXPECT_NEAR(bed.velocity_m_s[0].x, 0.1 - 5.0 / 7 * 0.02 * g * 0.1, 2e-4);
+}
+
+TEST(EngineStability, momentum_is_conserved_to_the_last_digits) {
+  Bed bed = empty_bed();
+  bed.add({0, 0, 0}, {0.1, 0.02, 0.03}, radius, 300);
+  bed.add({7.9e-4, 1e-4, 0}, {-0.07, 0.01, 0}, radius, 300);
+  bed.add({4e-4, 6.5e-4, 1e-4}, {0, -0.1, 0.05}, radius, 300);
+  Vec3 before, after;
+  for (const auto& v : bed.velocity_m_s) before += v;
+  make_native_engine(bed, {}, 1e-5)->advance(bed, 0.01);
+  for (const auto& v : bed.velocity_m_s) after += v;
+  EXPECT_LT(norm(after - before), 1e-15);
+}
+
+// Two materials and two sizes: linear and angular momentum of a free oblique hit.
+TEST(EngineStability, size_ratio_twenty_conserves_momentum) {
+  Material soft = alumina();
+  soft.youngs_modulus_Pa = 2e6, soft.friction = 0.9;
+  Bed bed = empty_bed();
+  bed.materials.push_back(soft);
+  bed.add({0, 0, 0}, {0, 0, 0}, 4e-3, 300, 0);
+  for (int k = 0; k < 12; ++k) {
+    const double a = 0.5 * k;
+    const Vec3 out{std::cos(a), std::sin(a), 0.3 * std::sin(3 * a)};
+    bed.add(normalized(out) * 4.25e-3, out * -0.05 + Vec3{0, 0, 0.03}, 2e-4, 300, 1);
+  }
+  const auto momenta = [&] {
+    Vec3 linear, angular;
+    for (std::size_t i = 0; i < bed.size(); ++i) {
+      const double m = mass_kg(bed, i);
+      linear += bed.velocity_m_s[i] * m;
+      angular += cross(bed.position_m[i], bed.velocity_m_s[i]) * m +
+                 bed.angular_velocity_rad_s[i] * (0.4 * m * bed.radius_m[i] * bed.radius_m[i]);
+    }
+    return std::pair{linear, angular};
+  };
+  const auto [linear, angular] = momenta();
+  const double step = 0.5 * step_limit(bed).largest_step_s;
+  make_native_engine(bed, {}, step)->advance(bed, 0.02);
+  const auto [linear_after, angular_after] = momenta();
+  const double scale = mass_kg(bed, 1) * 0.05;
+  EXPECT_LT(norm(linear_after - linear), 1e-11 * scale);
+  EXPECT_LT(norm(angular_after - angular), 1e-5 * scale * 4e-3);
+  EXPECT_GT(norm(bed.angular_velocity_rad_s[0]), 0);
+}
+
+TEST(EngineStability, far_from_the_origin_the_physics_is_the_same) {
+  const double step = 1e-6;
+  Bed here = two_spheres(alumina(), 0.05), there = here;
+  for (auto& p : there.position_m) p += {100, -100, 100};
+  make_native_engine(here, {}, step)->advance(here, 1e-3);
+  make_native_engine(there, {}, step)->advance(there, 1e-3);
+  EXPECT_NEAR(there.velocity_m_s[1].x / here.velocity_m_s[1].x, 1, 1e-4);
+}
+
+std::string refusal(Bed bed, double step, double until) {
+  try {
+    make_native_engine(bed, {}, step)->advance(bed, until);
+  } catch (const NumericalError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(EngineStability, tunnelling_is_refused_with_the_particle_and_advice) {
+  const auto message = refusal(two_spheres(alumina(), 10), 1e-5, 1e-3);
+  EXPECT_NE(message.find("particle 1 at"), std::string::npos) << message;
+  EXPECT_NE(message.find("try a step of"), std::string::npos) << message;
+}
+
+TEST(EngineStability, too_deep_an_overlap_is_refused) {
+  Bed bed = empty_bed();
+  bed.add({0, 0, 0}, {}, radius, 300);
+  bed.add({5e-4, 0, 0}, {}, radius, 300);
+  const auto message = refusal(bed, 1e-5, 1e-4);
+  EXPECT_NE(message.find("of particles 1 and 2"), std::string::npos) << message;
+  bed.position_m[1] = bed.position_m[0];
+  EXPECT_NE(refusal(bed, 1e-5, 1e-4), "");
+}
+
+// An overlap the model still holds is pushed apart; no more kinetic energy comes out than was stored.
+TEST(EngineStability, overlap_at_insertion_relaxes_without_explosion) {
+  const double delta = 0.4 * radius;
+  Bed bed = empty_bed();
+  bed.add({0, 0, 0}, {}, radius, 300);
+  bed.add({2 * radius - delta, 0, 0}, {}, radius, 300);
+  make_native_engine(bed, {}, 1e-5)->advance(bed, 1e-3);
+  const double young = 0.5 * 5e6 / (1 - 0.23 * 0.23);
+  const double stored = 8.0 / 15.0 * young * std::sqrt(radius / 2) * std::pow(delta, 2.5);
+  EXPECT_GT(bed.position_m[1].x - bed.position_m[0].x, 2 * radius);
+  EXPECT_LT(kinetic_energy(bed), stored);
+}
+
+TEST(EngineStability, nonsense_is_refused_at_the_door) {
+  Bed bed = two_spheres(alumina(), 0.1);
+  bed.radius_m[1] = -1;
+  EXPECT_THROW(make_native_engine(bed, {}, 1e-5)->advance(bed, 1e-3), InputError);
+  bed = two_spheres(alumina(), 0.1);
+  bed.position_m[0].x = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(make_native_engine(bed, {}, 1e-5)->advance(bed, 1e-3), InputError);
+  EXPECT_THROW(make_native_engine(bed, {}, 0), InputError);
+}
+
+/// 200 smooth elastic spheres in a periodic box. Potential energy is small and the same on average, so it is
+/// added in full.
+double gas_energy(const Bed& bed) {
+  const double young = 0.5 * bed.materials[0].youngs_modulus_Pa / (1 - 0.23 * 0.23);
+  double sum = kinetic_energy(bed);
+  for (const auto& pair : near_pairs(bed, 0).particles) {
+    const double delta = 2 * radius - pair.distance_m;
+    if (delta > 0) sum += 8.0 / 15.0 * young * std::sqrt(radius / 2) * std::pow(delta, 2.5);
+  }
+  return sum;
+}
+
+Bed gas() {
+  Material m = alumina();
+  m.restitution = 1, m.friction = 0;
+  Bed bed = empty_bed(m);
+  bed.box = {{0, 0, 0}, {7.2e-3, 7.2e-3, 7.2e-3}};
+  bed.periodic = {true, true, true};
+  for (int k = 0; k < 216; ++k) {
+    const auto a = random_normal2(3, 0, k), b = random_normal2(3, 1, k);
+    bed.add(Vec3{6e-4, 6e-4, 6e-4} + Vec3{1.2e-3 * (k % 6), 1.2e-3 * (k / 6 % 6), 1.2e-3 * (k / 36)},
+            Vec3{a[0], a[1], b[0]} * 0.02, radius, 300);
+  }
+  return bed;
+}
+
+void expect_energy_kept(std::int64_t steps, double step) {
+  Bed bed = gas();
+  const double before = gas_energy(bed);
+  make_native_engine(bed, {}, step)->advance(bed, double(steps) * step);
+  EXPECT_NEAR(gas_energy(bed) / before, 1, 1e-6);
+}
+
+// At 1e-6 s, 1.6 % of the Rayleigh time: the symplectic map keeps the energy, overlap by overlap.
+TEST(EngineStability, elastic_gas_keeps_its_energy) { expect_energy_kept(40000, 1e-6); }
+TEST(EngineStabilityLong, elastic_gas_keeps_its_energy_for_a_million_steps) { expect_energy_kept(1000000, 1e-6); }
+
+Bed heap() {
+  Bed bed = empty_bed();
+  bed.box = {{0, 0, 0}, {6e-3, 6e-3, 0.05}};
+  const auto faces = box_walls(bed.box);
+  bed.walls.assign(faces.begin(), faces.begin() + 5);
+  for (int k = 0; k < 300; ++k) {
+    const auto u = random_uniform2(5, 0, k);
+    bed.add({5e-4 + 1e-3 * (k % 6) + 5e-5 * u[0], 5e-4 + 1e-3 * (k / 6 % 5) + 5e-5 * u[1], 5e-4 + 9e-4 * (k / 30)}, {},
+            radius, 300);
+  }
+  return bed;
+}
+
+TEST(EngineStability, heap_comes_to_rest) {
+  Bed bed = heap();
+  make_native_engine(bed, {0, 0, -g}, 1e-5)->advance(bed, 1.0);
+  EXPECT_LT(kinetic_energy(bed) / double(bed.size()), 1e-20);
+}
+
+// Planted: springs forgotten at a rebuild make the heap creep.
+TEST(EngineStabilityLong, heap_stays_where_it_is) {
+  Bed bed = heap();
+  const auto engine = make_native_engine(bed, {0, 0, -g}, 1e-5);
+  engine->advance(bed, 2.0);
+  const Bed rested = bed;
+  engine->advance(bed, 10.0);
+  double crept = 0;
+  for (std::size_t i = 0; i < bed.size(); ++i) crept = std::max(crept, norm(bed.position_m[i] - rested.position_m[i]));
+  EXPECT_LT(crept, 1e-9 * radius);
+  EXPECT_LT(kinetic_energy(bed) / double(bed.size()), 1e-26);
+}
+
+}  // namespace
+}  // namespace granrad
