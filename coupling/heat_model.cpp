@@ -63,7 +63,11 @@ HeatModel::ParticleHeat HeatModel::draw_radiation(const Bed& bed, std::uint64_t 
 }
 
 void HeatModel::radiate(Bed& bed) {
+  // heats of the temperatures the bed will have midway: second order in the interval, see heat_step.h
+  auto temperature_K = midway_temperatures_K(bed, case_.heat.radiation.every_s);
+  bed.temperature_K.swap(temperature_K);
   auto drawn = draw_radiation(bed, static_cast<std::uint64_t>(radiation_.updates));
+  bed.temperature_K.swap(temperature_K);
   const RadiativeHeat& heat = drawn.all;
   bed.radiative_heat_W = std::move(drawn.heat_W);
   radiation_.updates += 1;

@@ -99,10 +99,11 @@ HeatPaths advance_temperatures(Bed& bed, const Conductances& conductances, doubl
   return received;
 }
 
-void linearise_radiative_heat(Bed& bed, double interval_s) {
+std::vector<double> midway_temperatures_K(const Bed& bed, double interval_s) {
+  auto midway = bed.temperature_K;
   for (std::size_t i = 0; i < bed.size(); ++i)
-    bed.radiative_heat_W[i] /=
-        1 + interval_s * emission_slope(bed, i, bed.temperature_K[i]) / heat_capacity_J_K(bed, i);
+    midway[i] += bed.radiative_heat_W[i] * interval_s / (2 * heat_capacity_J_K(bed, i));
+  return midway;
 }
 
 double thermal_energy_J(const Bed& bed) {

@@ -30,11 +30,12 @@ double radiation_time_constant_s(const Bed& bed);
 /// (naming it), or when a temperature leaves (0, infinity).
 HeatPaths advance_temperatures(Bed& bed, const Conductances& conductances, double dt_s);
 
-/// Heats to hold over a long radiation interval: implicit in the particle's own emission,
-/// T^4 ~ T0^4 + 4 T0^3 (T - T0) inside the step, so Q -> Q / (1 + dt/tau), tau = m c/(4 eps sigma T0^3 A).
-/// Never overshoots the surroundings; first order in dt like holding Q. What it takes off no other surface
-/// gets: the ledger then counts only what particles really receive.
-void linearise_radiative_heat(Bed& bed, double interval_s);
+/// Temperatures in the middle of the coming radiation interval, K, as the heats held so far foretell them:
+/// T_i + Q_i dt / (2 m c). A source asked for heats at these makes holding them second order in dt instead of
+/// first (error of a lone sphere after 2 s at dt = 0.01 s: 2e-7 instead of 1.1e-4), and it conserves energy
+/// as before, since it gives the heats of one set of temperatures. Stable for dt below
+/// radiation_time_constant_s.
+std::vector<double> midway_temperatures_K(const Bed& bed, double interval_s);
 
 /// sum m c T, J, compensated.
 double thermal_energy_J(const Bed& bed);

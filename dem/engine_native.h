@@ -7,15 +7,16 @@
 namespace granrad {
 
 /// The native engine: Hertz-Mindlin with history (dem/hertz_mindlin.h) and leapfrog with rotation, SIMD
-/// kernels for AVX-512, AVX2 and the baseline from one source (chosen at run time; GRANRAD_SIMD=avx512 | avx2 |
-/// baseline forces one), OpenMP, order-free fixed-point sums.
+/// kernels for AVX-512, AVX2 and the baseline from one source (chosen at run time; GRANRAD_SIMD=avx512 | avx2
+/// | baseline forces one), OpenMP, order-free fixed-point sums.
 ///
 /// The leapfrog is written drift - kick - drift: x moves half a step, forces follow from there and from the
-/// velocity at the step's start, v moves a whole step, x the other half. This is the map of velocity Verlet seen half a step
-/// later, and a Bed (position, velocity and springs at one instant) is all it needs to go on: cutting a run
-/// into pieces changes no bit. Neither do threads, list schedules and instruction sets.
+/// velocity at the step's start, v moves a whole step, x the other half. This is the map of velocity Verlet
+/// seen half a step later, and a Bed (position, velocity and springs at one instant) is all it needs to go
+/// on: cutting a run into pieces changes no bit. Neither do threads, list schedules and instruction sets.
 ///
 /// threads 0: OpenMP's default. bed.time_s = bed.step x step_s after each advance.
-std::unique_ptr<Engine> make_native_engine(const Bed& bed, const Vec3& gravity_m_s2, double step_s, int threads = 0);
+std::unique_ptr<Engine> make_native_engine(const Bed& bed, const Vec3& gravity_m_s2, double step_s,
+                                           int threads = 0);
 
 }  // namespace granrad

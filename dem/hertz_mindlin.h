@@ -25,7 +25,8 @@ struct ContactState {
   typename S::V displacement[3];  ///< tangential spring s, m; updated
 };
 
-/// Force on the first body, N, and e x F_t, N. Torques are -a_i (e x F_t) on the first, -a_j (e x F_t) on the second.
+/// Force on the first body, N, and e x F_t, N. Torques are -a_i (e x F_t) on the first, -a_j (e x F_t) on the
+/// second.
 template <class S>
 struct ContactForce {
   typename S::V force[3];
@@ -37,14 +38,14 @@ struct ContactForce {
 ///
 ///   F_n = k_n delta - gamma_n v_n (the attractive tail at the end of a contact is kept),
 ///   s <- P(s + v_t dt), P the projection on today's tangent plane, v_t the slip velocity of the surfaces,
-///   F_t = -k_t s - gamma_t v_t with today's k_t; when k_t |s| > mu |F_n| the contact slides: s is rescaled to
-///   mu |F_n| / k_t and the tangential damping is dropped.
+///   F_t = -k_t s - gamma_t v_t with today's k_t; when k_t |s| > mu |F_n| the contact slides: s is rescaled
+///   to mu |F_n| / k_t and the tangential damping is dropped.
 ///
 /// Bodies apart give zero force and forget s. Swapping the bodies negates every result exactly.
 /// S: the pack of lanes (dem/native/simd_*.h); ScalarPack for one contact.
 template <class S>
-[[gnu::always_inline]] inline ContactForce<S> contact_force(const HertzMindlin<typename S::V>& law, typename S::V step_s,
-                                                            ContactState<S>& c) {
+[[gnu::always_inline]] inline ContactForce<S> contact_force(const HertzMindlin<typename S::V>& law,
+                                                            typename S::V step_s, ContactState<S>& c) {
   using V = typename S::V;
   const V zero = S::set(0.0);
   const auto touching = S::less(zero, c.overlap);
@@ -89,16 +90,17 @@ template <class S>
 }
 
 /// Rolling friction of constant directional torque (LIGGGHTS `rolling_friction cdt`), on the first body, N m:
-/// -mu_r k_n delta R* w/|w| without its part along e (torsion), w = omega_i - omega_j; the second body gets the
-/// opposite.
+/// -mu_r k_n delta R* w/|w| without its part along e (torsion), w = omega_i - omega_j; the second body gets
+/// the opposite.
 template <class S>
-[[gnu::always_inline]] inline void rolling_torque(const HertzMindlin<typename S::V>& law, typename S::V elastic,
-                                                  const typename S::V e[3], const typename S::V w[3],
-                                                  typename S::V torque[3]) {
+[[gnu::always_inline]] inline void rolling_torque(const HertzMindlin<typename S::V>& law,
+                                                  typename S::V elastic, const typename S::V e[3],
+                                                  const typename S::V w[3], typename S::V torque[3]) {
   using V = typename S::V;
   const V square = w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
   const auto rolling = S::less(S::set(0.0), square);
-  const V magnitude = S::keep(rolling, law.rolling * elastic / S::select(rolling, S::sqrt(square), S::set(1.0)));
+  const V magnitude =
+      S::keep(rolling, law.rolling * elastic / S::select(rolling, S::sqrt(square), S::set(1.0)));
   const V torsion = w[0] * e[0] + w[1] * e[1] + w[2] * e[2];
   for (int k = 0; k < 3; ++k) torque[k] = -magnitude * (w[k] - torsion * e[k]);
 }

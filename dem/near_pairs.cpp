@@ -9,7 +9,7 @@
 
 #include "dem/scene/cell_grid.h"
 #include "dem/scene/error.h"
-#include "dem/wall_distance.h"
+#include "dem/scene/wall_distance.h"
 
 namespace granrad {
 

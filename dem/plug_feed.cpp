@@ -39,6 +39,12 @@ double plug_speed(const Scene& scene) {
   return speed;
 }
 
+/// Length of the section's outline that is wall.
+double walled_perimeter(const Scene& scene) {
+  const Vec3 size = scene.box.size();
+  return 2 * (scene.periodic[0] ? 0 : size.y) + 2 * (scene.periodic[1] ? 0 : size.x);
+}
+
 /// One period of the tape: a whole number of spheres, and the length that gives them the solid fraction.
 PackingBox one_period(const Scene& scene, std::size_t count) {
   const double radius = 0.5 * scene.particle_diameter_m;
@@ -65,7 +71,13 @@ PlugFeed::PlugFeed(const Scene& scene)
         fmt::format("feed.solid_fraction = {:g} (less than one particle in the box); ask for more",
                     settings_.solid_fraction));
   tape_ = frozen_ ? PackingBox{channel_, periodic_} : one_period(scene, radii.size());
-  if (!frozen_) speed_ = plug_speed(scene);
+  if (!frozen_) {
+    speed_ = plug_speed(scene);
+    friction_ = plug_friction({settings_.solid_fraction, settings_.transverse_velocity_std_m_s, 2 * radius_,
+                               scene.materials[0].restitution, scene.materials[0].friction,
+                               walled_perimeter(scene) / section(channel_)});
+    faster_ = friction_.mean_loss_m_s(channel_.size().z / speed_) / speed_;
+  }
   column_ = pack_spheres({tape_, radii, settings_.seed});
 }
 
@@ -77,11 +89,12 @@ double PlugFeed::leaves_below_m() const {
   return channel_.min.z - radius_;
 }
 
-void PlugFeed::add(Bed& bed, const Vec3& position) const {
+void PlugFeed::add(Bed& bed, const Vec3& position, double age_s) const {
   const auto transverse = random_normal2(settings_.seed, velocity_stream, bed.next_id);
-  const double std = settings_.transverse_velocity_std_m_s;
-  bed.add(position, {std * transverse[0], std * transverse[1], -speed_ * (1 + faster_)}, radius_,
-          temperature_);
+  const double std =
+      settings_.transverse_velocity_std_m_s / (1 + age_s / friction_.cooling_time_s);  // Haff's law
+  const double down = speed_ * (1 + faster_) - friction_.loss_m_s(age_s);
+  bed.add(position, {std * transverse[0], std * transverse[1], -down}, radius_, temperature_);
 }
 
 void PlugFeed::start(Bed& bed) {
@@ -97,7 +110,7 @@ void PlugFeed::start(Bed& bed) {
   for (double below = period; below - period < top - leaves_below_m(); below += period)
     for (const Vec3& p : column_)
       if (const double z = top + p.z - below; z >= leaves_below_m()) filling.push_back({p.x, p.y, z});
-  for (const Vec3& p : filling) add(bed, p);
+  for (const Vec3& p : filling) add(bed, p, (top - p.z) / speed_);
 }
 
 /// The spheres on the stretch of tape after `used_m_` up to `tape_m` (at most half a period), in order.
@@ -189,7 +202,7 @@ void PlugFeed::place(Bed& bed, Vec3 scheduled, std::vector<std::size_t>& near, F
   }
   if (!(at == scheduled)) ++totals.nudged;
   near.push_back(bed.size());
-  add(bed, at);
+  add(bed, at, 0);
 }
 
 void PlugFeed::place_waiting(Bed& bed, std::vector<std::size_t>& near, FeedTotals& totals) {
@@ -205,7 +218,7 @@ void PlugFeed::place_waiting(Bed& bed, std::vector<std::size_t>& near, FeedTotal
     --totals.waiting;
     ++totals.nudged;
     near.push_back(bed.size());
-    add(bed, at);
+    add(bed, at, 0);
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include "dem/feed.h"
 #include "dem/packing.h"
+#include "dem/plug_friction.h"
 
 namespace granrad {
 
@@ -16,9 +17,10 @@ namespace granrad {
 /// 0.36), and every period brings exactly the same number of spheres. Each half period the part of the tape
 /// that has not yet come is shaken again, so that periods differ.
 ///
-/// Friction at the walls slows the plug (1 to 2 % at phi 0.48), and a slower plug is a denser one at the same
-/// mass flow. So newcomers enter a little faster than the tape moves, by what the mean solid fraction of the
-/// channel over the last half periods asks for.
+/// Friction at the walls slows the plug (1.3 % on average at phi 0.48), and a slower plug is a denser one at
+/// the same mass flow. So newcomers enter faster than the tape moves by the mean loss that kinetic theory
+/// expects (dem/plug_friction.h), corrected each half period by the measured solid fraction of the channel. A
+/// channel filled at the start is filled with the velocities spheres have at that age.
 ///
 /// Transverse velocities are fresh normal deviates keyed by the id. As earlier spheres have drifted by then,
 /// a newcomer that touches one is pushed aside until it is free (counted as `nudged`); one that finds no room
@@ -46,7 +48,7 @@ class PlugFeed {
   void reshuffle();
   void measure_solid_fraction(const Bed& bed);
   void correct_speed();
-  void add(Bed& bed, const Vec3& position) const;
+  void add(Bed& bed, const Vec3& position, double age_s) const;
   void place(Bed& bed, Vec3 scheduled, std::vector<std::size_t>& near, FeedTotals& totals);
   void place_waiting(Bed& bed, std::vector<std::size_t>& near, FeedTotals& totals);
   bool push_clear(const Bed& bed, const std::vector<std::size_t>& near, Vec3& position) const;
@@ -58,6 +60,7 @@ class PlugFeed {
   Box channel_;
   std::array<bool, 3> periodic_;
   double radius_, temperature_, speed_ = 0;
+  PlugFriction friction_;
   bool frozen_;
 
   PackingBox tape_;           ///< one period of the tape, z from 0

@@ -18,7 +18,9 @@ double hertz_time_s(const Material& m, double radius_m, double impact_speed_m_s)
   const double effective_mass = 0.5 * mass, effective_radius = 0.5 * radius_m;
   const double modulus = 0.5 * m.youngs_modulus_Pa / (1 - m.poisson_ratio * m.poisson_ratio);
   if (impact_speed_m_s <= 0) return std::numeric_limits<double>::infinity();
-  return 2.87 * std::pow(effective_mass * effective_mass / (effective_radius * modulus * modulus * impact_speed_m_s), 0.2);
+  return 2.87 *
+         std::pow(effective_mass * effective_mass / (effective_radius * modulus * modulus * impact_speed_m_s),
+                  0.2);
 }
 
 StepLimit step_limit(const Bed& bed, double fastest_m_s) {
@@ -32,7 +34,8 @@ StepLimit step_limit(const Bed& bed, double fastest_m_s) {
     limit.rayleigh_s = std::min(limit.rayleigh_s, rayleigh_time_s(bed.materials[k], smallest[k]));
     limit.hertz_s = std::min(limit.hertz_s, hertz_time_s(bed.materials[k], smallest[k], 2 * fastest_m_s));
   }
-  limit.largest_step_s = std::min(StepLimit::rayleigh_share * limit.rayleigh_s, StepLimit::hertz_share * limit.hertz_s);
+  limit.largest_step_s =
+      std::min(StepLimit::rayleigh_share * limit.rayleigh_s, StepLimit::hertz_share * limit.hertz_s);
   return limit;
 }
 

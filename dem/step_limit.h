@@ -19,7 +19,8 @@ struct StepLimit {
   /// Shares of the two times a step may take. The paper allows 10-30 % of Rayleigh and at most 10 % of Hertz.
   static constexpr double rayleigh_share = 0.2, hertz_share = 0.1;
   double rayleigh_s = std::numeric_limits<double>::infinity();  ///< smallest Rayleigh time in the bed
-  double hertz_s = std::numeric_limits<double>::infinity();     ///< smallest Hertz time, two particles meeting head-on
+  double hertz_s =
+      std::numeric_limits<double>::infinity();  ///< smallest Hertz time, two particles meeting head-on
   double largest_step_s = std::numeric_limits<double>::infinity();  ///< min of the two shares
 };
 

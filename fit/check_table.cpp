@@ -9,7 +9,7 @@
 #include "dem/packing.h"
 #include "dem/scene/error.h"
 #include "fit/correlation_source.h"
-#include "raytrace/exact.h"
+#include "fit/unobstructed_pair.h"
 
 namespace granrad {
 
@@ -53,7 +53,7 @@ CheckedCurve Checker::pair_curve(const CorrelationRow& row) const {
           1,
           table_.pp_cutoff,
           [&](double d) { return raw_pp(table_, row, d); },
-          [](double d) { return exact_two_sphere(0.5, 0.5, d); }};
+          [](double d) { return unobstructed_pair(d); }};
 }
 
 /// Against an unbounded wall: the exact factor is 1/2 at every distance.

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "dem/scene/error.h"
-#include "raytrace/exact.h"
+#include "fit/unobstructed_pair.h"
 
 namespace granrad {
 
@@ -45,23 +45,12 @@ double own_distance(WallDistance convention, double h_over_d) {
   return convention == WallDistance::h_plus_r_over_d ? h_over_d + 0.5 : h_over_d;
 }
 
-/// Unobstructed pair factors on the grid of Correlation, computed once.
-const std::vector<double>& exact_pair_factors(double steps_per_d) {
-  static const std::vector<double> grid = [steps_per_d] {
-    std::vector<double> values(static_cast<std::size_t>(largest_pp_cutoff * steps_per_d) + 2);
-    for (std::size_t k = 0; k < values.size(); ++k)
-      values[k] = exact_two_sphere(0.5, 0.5, 1 + static_cast<double>(k) / steps_per_d);
-    return values;
-  }();
-  return grid;
-}
-
 }  // namespace
 
 double raw_pp(const CorrelationTable& table, const CorrelationRow& row, double d_star) {
   const double d = std::max(1.0, d_star);
   return table.form == CorrelationForm::cubic ? cubic(row.pp, d)
-                                              : exact_two_sphere(0.5, 0.5, d) * pp_transmittance(row.pp, d);
+                                              : unobstructed_pair(d) * pp_transmittance(row.pp, d);
 }
 
 double raw_pw(const CorrelationTable& table, const CorrelationRow& row, double h_over_d,
@@ -91,12 +80,12 @@ Correlation::Correlation(const CorrelationTable& table, double solid_fraction)
   table_.rows = {*lower, *upper};
 
   const auto count = static_cast<std::size_t>(std::ceil((pp_cutoff_ - 1) * steps_per_d)) + 2;
-  const auto& exact = exact_pair_factors(steps_per_d);
   pp_.resize(count);
   for (std::size_t k = 0; k < count; ++k) {
     const double d_star = 1 + static_cast<double>(k) / steps_per_d;
-    pp_[k] = row_pp(table_.rows[0], d_star, exact[k]);
-    if (upper_weight_ > 0) pp_[k] += upper_weight_ * (row_pp(table_.rows[1], d_star, exact[k]) - pp_[k]);
+    const double exact = unobstructed_pair(d_star);
+    pp_[k] = row_pp(table_.rows[0], d_star, exact);
+    if (upper_weight_ > 0) pp_[k] += upper_weight_ * (row_pp(table_.rows[1], d_star, exact) - pp_[k]);
   }
 }
 

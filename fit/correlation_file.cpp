@@ -148,9 +148,11 @@ std::string number_text(double v) {
 }
 
 std::string list_text(const std::vector<double>& values) {
-  std::string out = "[";
-  for (const double v : values) out += (out.size() > 1 ? ", " : "") + number_text(v);
-  return out + "]";
+  return fmt::format("[{}]", fmt::join(values, ", "));
+}
+
+std::string error_text(const std::vector<double>& errors) {
+  return fmt::format("[{:.3g}]", fmt::join(errors, ", "));
 }
 
 std::string statistics_text(const RowStatistics& statistics) {
@@ -158,9 +160,9 @@ std::string statistics_text(const RowStatistics& statistics) {
   for (const auto& field : statistics_fields)
     if (statistics.*field.value != 0) out += fmt::format("{} = {:.5g}\n", field.key, statistics.*field.value);
   if (!statistics.pp_standard_error.empty())
-    out += "pp_standard_error = " + list_text(statistics.pp_standard_error) + "\n";
+    out += "pp_standard_error = " + error_text(statistics.pp_standard_error) + "\n";
   if (!statistics.pw_standard_error.empty())
-    out += "pw_standard_error = " + list_text(statistics.pw_standard_error) + "\n";
+    out += "pw_standard_error = " + error_text(statistics.pw_standard_error) + "\n";
   return out.empty() ? "" : "[row.statistics]\n" + out;
 }
 

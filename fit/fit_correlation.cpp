@@ -154,7 +154,7 @@ RowFit fit_row(const std::vector<SampleSet>& snapshots, const FitOptions& option
   };
   fit.pp = fit_pairs(pointers(pairs), options.form);
   fit.pw = fit_walls(pointers(walls), options.form);
-  fit.row = {fraction, fit.pp.coefficient, fit.pw.coefficient, {}};
+  fit.row = {std::round(1e4 * fraction) / 1e4, fit.pp.coefficient, fit.pw.coefficient, {}};
   fit.wall_cutoff = options.form == CorrelationForm::cubic ? options.pp_cutoff : wall_cutoff(snapshots);
   auto& s = fit.row.statistics;
   s.pp_samples = fit.pp.samples, s.pw_samples = fit.pw.samples;

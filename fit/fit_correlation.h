@@ -49,7 +49,8 @@ struct RowFit {
 CurveFit fit_pairs(const std::vector<const DistanceSamples*>& snapshots, CorrelationForm form);
 CurveFit fit_walls(const std::vector<const DistanceSamples*>& snapshots, CorrelationForm form);
 
-/// Fits one row to snapshots of one solid fraction, with its statistics and the closure of its row sums.
+/// Fits one row to snapshots of one solid fraction (their mean, to four decimals), with its statistics and
+/// the closure of its row sums.
 RowFit fit_row(const std::vector<SampleSet>& snapshots, const FitOptions& options);
 
 /// Splits snapshots into groups of one solid fraction (within 2 % of the first of its group, or 0.002),

@@ -9,6 +9,7 @@
 #include "dem/scene/cell_grid.h"
 #include "dem/scene/error.h"
 #include "fit/correlation_source.h"
+#include "fit/unobstructed_pair.h"
 #include "raytrace/exact.h"
 
 namespace granrad {
@@ -85,8 +86,7 @@ DistanceSamples pair_samples(const Enclosure& enclosure, const HitCounts& counts
       });
       std::sort(found.begin(), found.end());
       for (const auto& [j, d_star] : found)
-        add_sample(counts, i, static_cast<std::size_t>(j), d_star, exact_two_sphere(0.5, 0.5, d_star),
-                   rows[i]);
+        add_sample(counts, i, static_cast<std::size_t>(j), d_star, unobstructed_pair(d_star), rows[i]);
     }
   }
   DistanceSamples samples;

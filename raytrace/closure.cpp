@@ -13,6 +13,7 @@ namespace {
 
 constexpr double row_tolerance = 1e-12;
 constexpr int most_sweeps = 20000;
+constexpr std::size_t worth_threads = 100000;  // pairs; below, waking threads costs more than the work
 
 /// Entry (i, j) of a sparse matrix, or -1.
 std::int64_t find(const SparsePattern& p, std::size_t i, std::int32_t j) {
@@ -83,7 +84,7 @@ ExchangeAreas merge(const ExchangeAreas& estimate, ClosureReport& report) {
   const std::size_t n = m.area_m2.size();
   std::vector<double> difference2(n, 0), sum2(n, 0), chi2(n, 0);
   std::vector<std::int64_t> compared(n, 0);
-#pragma omp parallel for schedule(dynamic, 64)
+#pragma omp parallel for schedule(dynamic, 64) if (m.value.size() > worth_threads)
   for (std::size_t i = 0; i < n; ++i)
     for (std::int64_t k = m.pattern.row_begin[i]; k < m.pattern.row_begin[i + 1]; ++k) {
       const auto j = static_cast<std::size_t>(m.pattern.column[k]);
@@ -135,7 +136,7 @@ std::vector<double> balancing_factors(const ExchangeAreas& x, int& sweeps) {
   const std::size_t n = x.area_m2.size();
   std::vector<double> factor(n, 1), ratio(n, 1);
   for (sweeps = 0; sweeps < most_sweeps; ++sweeps) {
-#pragma omp parallel for schedule(dynamic, 256)
+#pragma omp parallel for schedule(dynamic, 256) if (x.value.size() > worth_threads)
     for (std::size_t i = 0; i < n; ++i) {
       if (!closes(x, i)) continue;
       double sum = 0;
@@ -144,7 +145,7 @@ std::vector<double> balancing_factors(const ExchangeAreas& x, int& sweeps) {
       ratio[i] = x.area_m2[i] / (factor[i] * sum);
     }
     double worst = 0;
-    for (const double r : ratio) worst = std::max(worst, std::abs(r - 1));
+    for (const double r : ratio) worst = std::isfinite(r) ? std::max(worst, std::abs(r - 1)) : HUGE_VAL;
     if (worst <= 0.1 * row_tolerance || (worst <= row_tolerance && sweeps > most_sweeps / 2)) return factor;
     if (!std::isfinite(worst)) break;
     for (std::size_t i = 0; i < n; ++i) factor[i] *= std::sqrt(ratio[i]);

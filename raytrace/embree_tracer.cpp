@@ -9,19 +9,13 @@
 #include <limits>
 
 #include "dem/scene/error.h"
-#include "raytrace/facets.h"
+#include "raytrace/tracing_geometry.h"
 
 namespace granrad {
 
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// One image of a sphere, in tracing units. Without periodic boundaries every sphere has one.
-struct Ball {
-  Vec3 centre;
-  double radius;
-};
 
 /// A ray in flight and the nearest things it has met: what the Embree callbacks read and write. Lengths in
 /// tracing units, double precision; Embree's own single-precision ray only steers the walk through the tree.
@@ -45,22 +39,17 @@ void shorten(RTCRayHitN* rayhit, double distance, double margin) {
 
 }  // namespace
 
-struct EmbreeTracer::Impl {
+struct EmbreeTracer::Impl : TracingGeometry {
   Impl(const Enclosure& enclosure, int threads);
   ~Impl();
 
   Hit trace(const Vec3& origin, const Vec3& direction, std::int32_t from) const;
   Hit trace_periodic(Vec3 origin, const Vec3& direction, std::int32_t from) const;
-  std::int32_t image_at(std::int32_t sphere, const Vec3& centre) const;
-  std::int32_t polygon_before(const Vec3& centre, const Vec3& origin) const;
   void walk(Query& query, double limit) const;
   bool wall_between_centre_and(const Vec3& origin, std::int32_t sphere, Query& query) const;
   Hit resolve(const Query& query, const FacetHit& exit, double limit) const;
   Hit hit_on_facet(const Facets& facets, std::int32_t facet, const Vec3& point, double distance) const;
 
-  void choose_units(const Enclosure& enclosure);
-  void add_balls(const Enclosure& enclosure);
-  void add_facets(const Enclosure& enclosure);
   void attach(std::size_t count, RTCBoundsFunction bounds, RTCIntersectFunctionN intersect);
   void find_cut_spheres();
 
@@ -69,125 +58,10 @@ struct EmbreeTracer::Impl {
   static void meet_ball(const RTCIntersectFunctionNArguments* args);
   static void meet_facet(const RTCIntersectFunctionNArguments* args);
 
-  Vec3 to_units(const Vec3& p) const { return (p - centre_m) * (1 / unit_m); }
-  Vec3 to_metres(const Vec3& p) const { return p * unit_m + centre_m; }
-
-  Vec3 centre_m;      ///< origin of the tracing coordinates
-  double unit_m = 1;  ///< length of a tracing unit: the mean radius
-  double pad = 0;     ///< what single precision can misplace a ray by, anywhere in the scene
-  std::int32_t spheres = 0, open = 0;
-  std::array<bool, 3> periodic{};
-  Vec3 box_min, box_max;
-
-  std::vector<Ball> balls;  ///< the spheres in their order, then further periodic images
-  std::vector<std::int32_t> sphere_of_ball;
-  std::vector<std::int32_t> first_image;  ///< [spheres + 1], images of a sphere beyond itself; periodic only
-  std::vector<char> cut_by_wall;          ///< per sphere: a facet may reach inside it
-  std::unique_ptr<Facets> cell_facets, loose_facets;
-  std::optional<ConvexCell> cell;
-  std::vector<Vec3> polygon_normal_of_wall;  ///< zero for meshes
-
+  std::vector<char> cut_by_wall;  ///< per sphere: a facet may reach inside it
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
 };
-
-void EmbreeTracer::Impl::choose_units(const Enclosure& enclosure) {
-  Vec3 low{infinity, infinity, infinity}, high = -low;
-  const auto include = [&](const Vec3& p, double r) {
-    for (int k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], p[k] - r);
-      high[k] = std::max(high[k], p[k] + r);
-    }
-  };
-  std::vector<std::string> problems;
-  double radius_sum = 0;
-  for (std::size_t i = 0; i < enclosure.sphere_count(); ++i) {
-    const Vec3& c = enclosure.centre_m[i];
-    const double r = enclosure.radius_m[i];
-    if (!is_finite(c) || !std::isfinite(r) || r <= 0) {
-      problems.push_back(
-          fmt::format("sphere {}: centre = ({}, {}, {}), radius = {} (must be finite, radius "
-                      "positive)",
-                      i, c.x, c.y, c.z, r));
-      continue;
-    }
-    radius_sum += r;
-    include(c, r);
-  }
-  for (const Wall& wall : enclosure.walls)
-    for (const Vec3& v : wall.vertices) {
-      if (!is_finite(v)) problems.push_back(fmt::format("wall '{}': a vertex is not finite", wall.name));
-      include(v, 0);
-    }
-  if (!problems.empty()) throw InputError(problems);
-  for (int k = 0; k < 3; ++k)
-    if (periodic[k]) {
-      for (std::size_t i = 0; i < enclosure.sphere_count(); ++i)
-        if (2 * enclosure.radius_m[i] >= enclosure.box.size()[k])
-          throw InputError(
-              fmt::format("sphere {}: radius = {} m (its diameter must be smaller than the period "
-                          "{} m)",
-                          i, enclosure.radius_m[i], enclosure.box.size()[k]));
-      low[k] = enclosure.box.min[k];
-      high[k] = enclosure.box.max[k];
-    }
-  if (!(low.x <= high.x)) return;  // nothing but surroundings
-  centre_m = 0.5 * (low + high);
-  const double extent = norm(high - low);
-  unit_m = spheres > 0 ? radius_sum / spheres : extent / 100;
-  pad = 1e-6 * extent / unit_m;
-  box_min = to_units(enclosure.box.min);
-  box_max = to_units(enclosure.box.max);
-}
-
-void EmbreeTracer::Impl::add_balls(const Enclosure& enclosure) {
-  for (std::int32_t i = 0; i < spheres; ++i) {
-    balls.push_back({to_units(enclosure.centre_m[i]), enclosure.radius_m[i] / unit_m});
-    sphere_of_ball.push_back(i);
-  }
-  if (!periodic[0] && !periodic[1] && !periodic[2]) return;
-  const Vec3 period = box_max - box_min;
-  for (std::int32_t i = 0; i < spheres; ++i) {
-    first_image.push_back(static_cast<std::int32_t>(balls.size()));
-    for (int k = 0; k < 3; ++k)
-      if (periodic[k])
-        balls[i].centre[k] -= period[k] * std::floor((balls[i].centre[k] - box_min[k]) / period[k]);
-    for (int image = 0; image < 27; ++image) {
-      const int shift[3] = {image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1};
-      Ball ball = balls[i];
-      bool wanted = image != 13;
-      for (int k = 0; k < 3; ++k) {
-        wanted = wanted && (shift[k] == 0 || periodic[k]);
-        ball.centre[k] += shift[k] * period[k];
-        if (periodic[k])
-          wanted = wanted && ball.centre[k] + ball.radius > box_min[k] &&
-                   ball.centre[k] - ball.radius < box_max[k];
-      }
-      if (!wanted) continue;
-      balls.push_back(ball);
-      sphere_of_ball.push_back(i);
-    }
-  }
-  first_image.push_back(static_cast<std::int32_t>(balls.size()));
-}
-
-void EmbreeTracer::Impl::add_facets(const Enclosure& enclosure) {
-  double farthest_m = 0;
-  for (const Wall& wall : enclosure.walls)
-    for (const Vec3& v : wall.vertices) farthest_m = std::max(farthest_m, norm(v));
-  const double tolerance = 1e-9 + 16 * std::numeric_limits<double>::epsilon() * farthest_m / unit_m;
-  cell_facets = std::make_unique<Facets>(tolerance);
-  loose_facets = std::make_unique<Facets>(tolerance);
-  for (std::size_t w = 0; w < enclosure.walls.size(); ++w) {
-    const bool polygon = enclosure.walls[w].is_polygon();
-    if (polygon) cell_facets->add(enclosure.walls[w], static_cast<std::int32_t>(w), centre_m, 1 / unit_m);
-    polygon_normal_of_wall.push_back(polygon ? polygon_normal(enclosure.walls[w]) : Vec3{});
-  }
-  if (!periodic[0] && !periodic[1] && !periodic[2]) cell = ConvexCell::from(*cell_facets);
-  for (std::size_t w = 0; w < enclosure.walls.size(); ++w)
-    if (!cell || !enclosure.walls[w].is_polygon())
-      loose_facets->add(enclosure.walls[w], static_cast<std::int32_t>(w), centre_m, 1 / unit_m);
-}
 
 void EmbreeTracer::Impl::attach(std::size_t count, RTCBoundsFunction bounds,
                                 RTCIntersectFunctionN intersect) {
@@ -202,13 +76,7 @@ void EmbreeTracer::Impl::attach(std::size_t count, RTCBoundsFunction bounds,
   rtcReleaseGeometry(geometry);
 }
 
-EmbreeTracer::Impl::Impl(const Enclosure& enclosure, int threads)
-    : spheres(static_cast<std::int32_t>(enclosure.sphere_count())),
-      open(static_cast<std::int32_t>(enclosure.open_surface())),
-      periodic(enclosure.periodic) {
-  choose_units(enclosure);
-  add_balls(enclosure);
-  add_facets(enclosure);
+EmbreeTracer::Impl::Impl(const Enclosure& enclosure, int threads) : TracingGeometry(enclosure) {
   const int build_threads = threads > 0 ? threads : omp_get_max_threads();
   device = rtcNewDevice(fmt::format("threads={}", build_threads).c_str());
   if (!device) throw NumericalError("Embree: no device");
@@ -407,31 +275,6 @@ Hit EmbreeTracer::Impl::trace(const Vec3& origin, const Vec3& direction, std::in
   const FacetHit exit = cell ? cell->exit(*cell_facets, origin, direction) : FacetHit{infinity, -1};
   if (exit.distance > 0) walk(query, exit.distance);
   return resolve(query, exit, infinity);
-}
-
-std::int32_t EmbreeTracer::Impl::image_at(std::int32_t sphere, const Vec3& centre) const {
-  const auto same = [&](std::int32_t ball) {
-    return norm(balls[static_cast<std::size_t>(ball)].centre - centre) <
-           0.5 * balls[static_cast<std::size_t>(ball)].radius;
-  };
-  if (same(sphere)) return sphere;
-  const auto begin = first_image[static_cast<std::size_t>(sphere)];
-  const auto end = first_image[static_cast<std::size_t>(sphere) + 1];
-  for (std::int32_t image = begin; image < end; ++image)
-    if (same(image)) return image;
-  return -1;
-}
-
-/// The polygon that hides `origin` from the centre of its sphere, or -1.
-std::int32_t EmbreeTracer::Impl::polygon_before(const Vec3& centre, const Vec3& origin) const {
-  const Facets& f = *loose_facets;
-  for (std::int32_t k = 0; k < f.count(); ++k) {
-    const double h = f.height(k, origin);
-    if (h < -f.tolerance() && f.height(k, centre) > 0 &&
-        f.edge_margin(k, origin - h * f.normal(k)) >= -f.tolerance())
-      return k;
-  }
-  return -1;
 }
 
 /// Follows the ray from period to period: the origin is kept inside the box, the image of the sphere it left

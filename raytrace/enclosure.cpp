@@ -7,7 +7,7 @@
 
 #include "dem/scene/constants.h"
 #include "dem/scene/error.h"
-#include "dem/wall_distance.h"
+#include "dem/scene/wall_distance.h"
 
 namespace granrad {
 

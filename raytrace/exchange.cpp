@@ -86,7 +86,7 @@ SparsePattern symmetrized(const SparsePattern& pattern) {
     both.row_begin[i + 1] = both.row_begin[i] + size;
   }
   both.column.resize(static_cast<std::size_t>(both.row_begin[n]));
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (both.column.size() > 100000)
   for (std::size_t i = 0; i < n; ++i)
     std::set_union(row(i), row(i + 1), source.begin() + begin[i], source.begin() + begin[i + 1],
                    both.column.begin() + both.row_begin[i]);

@@ -24,9 +24,10 @@ struct HitCounts {
   /// either per surface that launches, [surfaces], or by the size of the count, [b] for counts in [2^b,
   /// 2^(b+1)). Both empty: binomial.
   std::vector<double> variance_factor, variance_factor_by_count;
-  std::int64_t leaked = 0;        ///< rays that met the back of a wall or were lost
-  double mean_chord_m = 0;        ///< area-weighted mean free length of a ray over all surfaces
-  double mean_chord_error_m = 0;  ///< its standard error (binomial sampling)
+  double wall_sum_variance_factor = 1;  ///< of a particle's sum over all walls and surroundings, to binomial
+  std::int64_t leaked = 0;              ///< rays that met the back of a wall or were lost
+  double mean_chord_m = 0;              ///< area-weighted mean free length of a ray over all surfaces
+  double mean_chord_error_m = 0;        ///< its standard error (binomial sampling)
   /// > 1: to respect the memory limit, a pair with h < unit hits was kept with probability h / unit, as
   /// `unit` hits: unbiased, the same draw for both directions of a pair. 1: nothing was thinned.
   std::int64_t thinning_unit = 1;

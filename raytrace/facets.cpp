@@ -155,32 +155,36 @@ std::optional<ConvexCell> ConvexCell::from(const Facets& facets) {
     const double area = polygon_area(whole);
     if (std::abs(covered - area) > 1e-6 * area) return {};
   }
+  for (const auto& face : cell.faces_)
+    cell.planes_.push_back({facets.normal(face[0]), facets.offset(face[0])});
   return cell;
 }
 
 FacetHit ConvexCell::exit(const Facets& facets, const Vec3& origin, const Vec3& direction) const {
-  const std::vector<std::int32_t>* nearest = nullptr;
+  std::size_t nearest = planes_.size();
   double distance = infinity, deepest = -facets.tolerance();
   bool behind = false;
-  for (const auto& face : faces_) {
-    const double h = facets.height(face[0], origin), approach = -dot(facets.normal(face[0]), direction);
+  for (std::size_t k = 0; k < planes_.size(); ++k) {
+    const Plane& plane = planes_[k];
+    const double h = dot(plane.normal, origin) - plane.offset, approach = -dot(plane.normal, direction);
     if (h < deepest) {
       deepest = h;
       distance = 0;
       behind = true;
-      nearest = &face;
+      nearest = k;
     } else if (!behind && approach > 0 && h < distance * approach) {
       distance = std::max(0.0, h / approach);
-      nearest = &face;
+      nearest = k;
     }
   }
-  if (!nearest) return {infinity, -1};
-  if (nearest->size() == 1) return {distance, nearest->front()};
+  if (nearest == planes_.size()) return {infinity, -1};
+  const auto& face = faces_[nearest];
+  if (face.size() == 1) return {distance, face[0]};
   const Vec3 p = origin + distance * direction;
   const auto margin_less = [&](std::int32_t a, std::int32_t b) {
     return facets.edge_margin(a, p) < facets.edge_margin(b, p);
   };
-  return {distance, *std::max_element(nearest->begin(), nearest->end(), margin_less)};
+  return {distance, *std::max_element(face.begin(), face.end(), margin_less)};
 }
 
 }  // namespace granrad

@@ -72,7 +72,12 @@ class ConvexCell {
   FacetHit exit(const Facets& facets, const Vec3& origin, const Vec3& direction) const;
 
  private:
-  std::vector<std::vector<std::int32_t>> faces_;  ///< facets of one plane
+  struct Plane {
+    Vec3 normal;
+    double offset;
+  };
+  std::vector<Plane> planes_;
+  std::vector<std::vector<std::int32_t>> faces_;  ///< facets of each plane
 };
 
 }  // namespace granrad

@@ -6,9 +6,9 @@ namespace granrad {
 
 /// How often the rays of a surface ended on one other.
 struct HitEntry {
-  std::int32_t surface;
-  std::int64_t hits;
-  double replicate_square_sum;  ///< sum over replicates of (hits in it)^2
+  std::int32_t surface = -1;
+  std::int64_t hits = 0;
+  double replicate_square_sum = 0;  ///< sum over replicates of (hits in it)^2
 };
 
 /// Counts the hits of one surface at a time. Memory: 20 bytes per surface of the enclosure, for one per

@@ -53,11 +53,12 @@ Sweep sweep(const LineScene& scene, const LineOptions& options, int directions) 
   const std::size_t surfaces = scene.surface_count();
   const std::size_t buffer_bytes =
       std::clamp<std::size_t>(surfaces * buffer_bytes_per_row, 1 << 20, options.memory_limit_bytes / 8);
-  PairCounts counts(surfaces, options.memory_limit_bytes / bytes_per_pair);
+  std::vector<char> kind(surfaces, 1);
+  std::fill_n(kind.begin(), scene.x.size(), 0);
+  PairCounts counts(std::move(kind), options.memory_limit_bytes / bytes_per_pair);
   [[maybe_unused]] const int threads = line_threads(options.threads);
-  const int block = static_cast<int>(
-      std::clamp<std::size_t>(options.memory_limit_bytes / bytes_per_pair / (16 * surfaces + 1), 4,
-                              static_cast<std::size_t>(directions)));
+  const auto affordable = static_cast<int>(options.memory_limit_bytes / bytes_per_pair / (16 * surfaces));
+  const int block = std::clamp(affordable, std::min(4, directions), directions);
   std::int64_t leaked = 0;
   ChordSums chords;
 #pragma omp parallel num_threads(threads) reduction(+ : leaked)
@@ -87,9 +88,7 @@ Sweep sweep(const LineScene& scene, const LineOptions& options, int directions) 
     }
     leaked += pass.leaked();
   }
-  std::vector<char> kind(surfaces, 1);
-  std::fill_n(kind.begin(), scene.x.size(), 0);
-  SymmetricCounts result = counts.finish(kind);
+  SymmetricCounts result = counts.finish();
   std::int64_t ends = 0;
   for (auto c : result.count) ends += c;
   return {std::move(result),

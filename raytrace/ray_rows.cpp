@@ -19,6 +19,7 @@ struct Row {
   std::vector<HitEntry> entries;
   std::int64_t launched = 0, leaked = 0, chords = 0;
   double chord_sum_m = 0, chord_square_sum_m2 = 0;
+  HitEntry outside;  ///< all walls and surroundings as if they were one
 };
 
 /// Enough independent scrambles that the variance found from them, pooled over the enclosure, is known to
@@ -37,6 +38,14 @@ class VarianceTable {
     bin.found += r / (r - 1) * (e.replicate_square_sum - k * k / r);
     bin.binomial += k * (1 - k / static_cast<double>(launched));
     bin.freedom += r - 1;
+  }
+  double overall() const {
+    Bin all;
+    for (const Bin& bin : bins_) {
+      all.found += bin.found;
+      all.binomial += bin.binomial;
+    }
+    return all.binomial > 0 ? all.found / all.binomial : 1;
   }
   /// Neighbouring sizes are pooled until each group has enough degrees of freedom.
   std::vector<double> factors() const {
@@ -78,6 +87,7 @@ class RowTracer {
         follow_(follow),
         replicates_(replicate_count(options.sampling, enclosure.surface_count())),
         threads_(options.threads > 0 ? options.threads : omp_get_max_threads()),
+        spheres_(static_cast<std::int32_t>(enclosure.sphere_count())),
         tallies_(static_cast<std::size_t>(threads_), HitTally(enclosure.surface_count())) {}
 
   int replicates() const { return replicates_; }
@@ -97,6 +107,7 @@ class RowTracer {
     if (rays == 0) return row;
     const std::int64_t per_replicate = (rays + replicates_ - 1) / replicates_;
     for (std::int32_t replicate = 0; replicate < replicates_; ++replicate) {
+      std::int64_t outside = 0;
       const RaySampler sampler(options_.sampling, options_.seed, surface, replicate);
       for (std::int64_t ray = 0; ray < per_replicate; ++ray) {
         const auto u = sampler(static_cast<std::uint64_t>(ray));
@@ -107,12 +118,15 @@ class RowTracer {
           continue;
         }
         tally.add(end.surface);
+        outside += end.surface >= spheres_;
         if (!std::isfinite(end.chord_m)) continue;
         ++row.chords;
         row.chord_sum_m += end.chord_m;
         row.chord_square_sum_m2 += end.chord_m * end.chord_m;
       }
       tally.end_replicate();
+      row.outside.hits += outside;
+      row.outside.replicate_square_sum += static_cast<double>(outside) * static_cast<double>(outside);
     }
     row.entries = tally.take();
     row.launched = per_replicate * replicates_;
@@ -124,6 +138,7 @@ class RowTracer {
   const TraceOptions& options_;
   const std::function<RayEnd(const EmittedRay&)>& follow_;
   int replicates_, threads_;
+  std::int32_t spheres_;
   std::vector<HitTally> tallies_;
 };
 
@@ -165,16 +180,23 @@ std::int64_t thinning_unit(const std::vector<Row>& sample, std::size_t surfaces,
 /// Gathers rows in the order of the surfaces.
 class CountBuilder {
  public:
-  CountBuilder(HitCounts& counts, Thinning thinning, int replicates)
-      : counts_(counts), thinning_(thinning), replicates_(replicates) {
+  CountBuilder(HitCounts& counts, Thinning thinning, int replicates, std::size_t spheres)
+      : counts_(counts),
+        thinning_(thinning),
+        replicates_(replicates),
+        spheres_(static_cast<std::int32_t>(spheres)) {
     counts_.pattern.row_begin.assign(1, 0);
     counts_.thinning_unit = thinning_.unit();
   }
 
   void append(const Row& row) {
     const auto i = static_cast<std::int32_t>(counts_.launched.size());
+    // The few rows of the walls would speak for the particles' large counts, and are smoother.
+    const bool in_table = replicates_ > 1 && (spheres_ == 0 || i < spheres_);
+    if (in_table && row.outside.hits > 0 && row.outside.hits < row.launched)
+      outside_.add(row.outside, row.launched, replicates_);
     for (const HitEntry& e : row.entries) {
-      if (replicates_ > 1) table_.add(e, row.launched, replicates_);
+      if (in_table) table_.add(e, row.launched, replicates_);
       const std::int64_t hits = thinning_.kept(i, e.surface, e.hits);
       if (hits == 0) continue;
       counts_.pattern.column.push_back(e.surface);
@@ -196,7 +218,10 @@ class CountBuilder {
       counts_.mean_chord_m = chord_ / area_;
       counts_.mean_chord_error_m = std::sqrt(chord_variance_) / area_;
     }
-    if (replicates_ > 1) counts_.variance_factor_by_count = table_.factors();
+    if (replicates_ > 1) {
+      counts_.variance_factor_by_count = table_.factors();
+      counts_.wall_sum_variance_factor = outside_.overall();
+    }
     if (thinning_.unit() == 1) return;
     // A pair that stands for many rare ones: its count is `unit` or nothing, the same for both directions.
     auto& factor = counts_.variance_factor_by_count;
@@ -210,7 +235,8 @@ class CountBuilder {
   HitCounts& counts_;
   Thinning thinning_;
   int replicates_;
-  VarianceTable table_;
+  std::int32_t spheres_;
+  VarianceTable table_, outside_;
   double area_ = 0, chord_ = 0, chord_variance_ = 0;
 };
 
@@ -247,7 +273,7 @@ HitCounts trace_rows(const Enclosure& enclosure, const std::vector<double>& emit
 
   HitCounts counts;
   counts.area_m2 = emitting_area_m2;
-  CountBuilder builder(counts, Thinning(options.seed, unit), tracer.replicates());
+  CountBuilder builder(counts, Thinning(options.seed, unit), tracer.replicates(), enclosure.sphere_count());
   // Walls first: they send the most rays, and threads should not wait for the last of them.
   const std::size_t spheres = enclosure.sphere_count();
   std::vector<std::int32_t> walls(surfaces - spheres);

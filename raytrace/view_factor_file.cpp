@@ -80,6 +80,7 @@ void write_rays(Hdf5Writer& out, const HitCounts& counts) {
   write_some(out, "/rays/variance_factor_by_count", counts.variance_factor_by_count);
   out.attribute("/rays", "leaked", std::vector<std::int64_t>{counts.leaked});
   out.attribute("/rays", "thinning_unit", std::vector<std::int64_t>{counts.thinning_unit});
+  out.attribute("/rays", "wall_sum_variance_factor", counts.wall_sum_variance_factor);
   out.attribute("/rays", "mean_chord_m", counts.mean_chord_m);
   out.attribute("/rays", "mean_chord_error_m", counts.mean_chord_error_m);
 }
@@ -171,7 +172,8 @@ Enclosure read_enclosure(const Hdf5Reader& in) {
   read_walls(in, e, in.read_texts("/surfaces/name"));
   const auto box = read_points(in, "/snapshot/box");
   e.box = {box.at(0), box.at(1)};
-  for (int axis = 0; axis < 3; ++axis) e.periodic[axis] = in.integer_attribute("/snapshot", periodic_name[axis]) != 0;
+  for (int axis = 0; axis < 3; ++axis)
+    e.periodic[axis] = in.integer_attribute("/snapshot", periodic_name[axis]) != 0;
   return e;
 }
 
@@ -185,6 +187,7 @@ HitCounts read_rays(const Hdf5Reader& in) {
   counts.variance_factor_by_count = read_some<double>(in, "/rays/variance_factor_by_count");
   counts.leaked = in.integer_attribute("/rays", "leaked");
   counts.thinning_unit = in.integer_attribute("/rays", "thinning_unit");
+  counts.wall_sum_variance_factor = in.real_attribute("/rays", "wall_sum_variance_factor");
   counts.mean_chord_m = in.real_attribute("/rays", "mean_chord_m");
   counts.mean_chord_error_m = in.real_attribute("/rays", "mean_chord_error_m");
   return counts;

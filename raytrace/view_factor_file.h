@@ -19,7 +19,7 @@ namespace granrad {
 ///   /rays/launched [N] int64, /row_begin [N+1] int64, /column [m] int32, /hits [m] int64 raw counts, before
 ///   closure,
 ///     /variance_factor [N] or /variance_factor_by_count [b] where sampling is not plain (see HitCounts);
-///     attributes leaked, thinning_unit, mean_chord_m, mean_chord_error_m;
+///     attributes leaked, thinning_unit, wall_sum_variance_factor, mean_chord_m, mean_chord_error_m;
 ///   /snapshot: what distances are computed from: /centre [n,3] m, /radius [n] m, /particle [n] int32 (place
 ///   in the
 ///     bed), /wall_vertex [v,3] m with /wall_vertex_begin [W+1], /wall_triangle [t,3] int32 with

@@ -18,15 +18,12 @@ struct WallSum {
 WallSum wall_sum(const Enclosure& enclosure, const HitCounts& counts, std::size_t i) {
   const auto walls = static_cast<std::int32_t>(enclosure.sphere_count());
   const double n = static_cast<double>(counts.launched[i]);
-  double hits = 0, factor = 0;
-  for (std::int64_t k = counts.pattern.row_begin[i]; k < counts.pattern.row_begin[i + 1]; ++k) {
-    if (counts.pattern.column[static_cast<std::size_t>(k)] < walls) continue;
-    const double h = static_cast<double>(counts.hits[static_cast<std::size_t>(k)]);
-    hits += h;
-    factor += h * count_variance_factor(counts, i, k);
-  }
+  double hits = 0;
+  for (std::int64_t k = counts.pattern.row_begin[i]; k < counts.pattern.row_begin[i + 1]; ++k)
+    if (counts.pattern.column[static_cast<std::size_t>(k)] >= walls)
+      hits += static_cast<double>(counts.hits[static_cast<std::size_t>(k)]);
   const double p = (hits + 0.5) / (n + 1);
-  return {hits / n, p * (1 - p) / n * (hits > 0 ? factor / hits : 1)};
+  return {hits / n, p * (1 - p) / n * counts.wall_sum_variance_factor};
 }
 
 HitCounts trace(const Enclosure& enclosure, const EmbreeTracer& tracer, const std::vector<std::int64_t>& rays,

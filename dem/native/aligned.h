@@ -28,7 +28,9 @@ struct AlignedAllocator {
   }
   void deallocate(T* memory, std::size_t) { std::free(memory); }
   template <class U>
-  bool operator==(const AlignedAllocator<U>&) const { return true; }
+  bool operator==(const AlignedAllocator<U>&) const {
+    return true;
+  }
 };
 
 template <class T>

@@ -25,11 +25,14 @@ bool same_solid(const Material& a, const Material& b) {
 void check(const Bed& bed) {
   std::vector<std::string> problems;
   for (std::size_t i = 0; i < bed.size() && problems.size() < 20; ++i) {
-    const bool known = bed.material[i] >= 0 && bed.material[i] < static_cast<std::int32_t>(bed.materials.size());
+    const bool known =
+        bed.material[i] >= 0 && bed.material[i] < static_cast<std::int32_t>(bed.materials.size());
     const auto complain = [&](const char* what, double value, const char* why) {
-      problems.push_back(fmt::format("particle {}: {} = {} ({}) correct the bed", bed.id[i], what, value, why));
+      problems.push_back(
+          fmt::format("particle {}: {} = {} ({}) correct the bed", bed.id[i], what, value, why));
     };
-    if (!(bed.radius_m[i] > 0 && std::isfinite(bed.radius_m[i]))) complain("radius", bed.radius_m[i], "must be positive");
+    if (!(bed.radius_m[i] > 0 && std::isfinite(bed.radius_m[i])))
+      complain("radius", bed.radius_m[i], "must be positive");
     if (!is_finite(bed.position_m[i])) complain("position", NAN, "must be finite");
     if (!is_finite(bed.velocity_m_s[i]) || !is_finite(bed.angular_velocity_rad_s[i]))
       complain("velocity", NAN, "must be finite");
@@ -42,15 +45,17 @@ void check(const Bed& bed) {
     if (bed.size() == 0) break;
     if (!(m.youngs_modulus_Pa > 0)) complain("youngs_modulus_Pa", m.youngs_modulus_Pa, "must be positive");
     if (!(m.density_kg_m3 > 0)) complain("density_kg_m3", m.density_kg_m3, "must be positive");
-    if (!(m.restitution > 0 && m.restitution <= 1)) complain("restitution", m.restitution, "must be in (0, 1]");
+    if (!(m.restitution > 0 && m.restitution <= 1))
+      complain("restitution", m.restitution, "must be in (0, 1]");
     if (!(m.friction >= 0)) complain("friction", m.friction, "must not be negative");
   }
   for (int a = 0; a < 3 && bed.size() > 0; ++a) {
     if (!bed.periodic[a]) continue;
     const double largest = *std::max_element(bed.radius_m.begin(), bed.radius_m.end());
     if (bed.box.size()[a] < 4 * largest)
-      problems.push_back(fmt::format("box.size_m[{}] = {} (periodic: a particle would touch itself) try at least {}", a,
-                                     bed.box.size()[a], 4 * largest));
+      problems.push_back(
+          fmt::format("box.size_m[{}] = {} (periodic: a particle would touch itself) try at least {}", a,
+                      bed.box.size()[a], 4 * largest));
   }
   if (!problems.empty()) throw InputError(problems);
 }
@@ -59,7 +64,8 @@ void check(const Bed& bed) {
 
 bool BedTransfer::same_particles(const Bed& bed) const {
   return same_bits(bed.id, id_) && same_bits(bed.radius_m, radius_) && same_bits(bed.material, material_) &&
-         std::equal(bed.materials.begin(), bed.materials.end(), materials_.begin(), materials_.end(), same_solid);
+         std::equal(bed.materials.begin(), bed.materials.end(), materials_.begin(), materials_.end(),
+                    same_solid);
 }
 
 void BedTransfer::lay_out(const Bed& bed, Rows& rows, int threads) {
@@ -133,12 +139,14 @@ void BedTransfer::store(const Rows& rows, const std::vector<Memory>& memories, i
     bed.velocity_m_s[b] = rows.velocity_of(i);
     bed.angular_velocity_rad_s[b] = rows.spin_of(i);
     const double sum = bed.position_m[b].x + bed.position_m[b].y + bed.position_m[b].z +
-                       dot(bed.velocity_m_s[b], bed.velocity_m_s[b]) + dot(bed.angular_velocity_rad_s[b], bed.angular_velocity_rad_s[b]);
+                       dot(bed.velocity_m_s[b], bed.velocity_m_s[b]) +
+                       dot(bed.angular_velocity_rad_s[b], bed.angular_velocity_rad_s[b]);
     if (!std::isfinite(sum)) broken = std::max<std::int64_t>(broken, b);
   }
   if (broken >= 0)
-    throw NumericalError(fmt::format("particle {} left the range of numbers try a smaller step or less overlap at the start",
-                                     bed.id[broken]));
+    throw NumericalError(
+        fmt::format("particle {} left the range of numbers try a smaller step or less overlap at the start",
+                    bed.id[broken]));
   // Sorted by (first, second): by buckets of the first, which are short.
   std::vector<std::int64_t> begin(rows.count + 2, 0);
   for (const auto& m : memories) ++begin[m.first + 2];

@@ -10,10 +10,13 @@
 
 namespace granrad::native {
 namespace {
-/// Half of the near list's skin and of the tight list's smallest margin, in radii: the measured optimum is flat.
+/// Half of the near list's skin and of the tight list's smallest margin, in radii: the measured optimum is
+/// flat.
 constexpr double half_skin = 0.25, smallest_margin = 0.01, widest_half_skin = 0.6;
 const double diagonal = 1.0001 * std::sqrt(3.0);  ///< speed limits hold for each direction alone
-double largest_component(const Vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+double largest_component(const Vec3& v) {
+  return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
 }  // namespace
 
 ContactLists::ContactLists(const Kernels& kernels, int threads, ListSchedule schedule)
@@ -37,11 +40,13 @@ void ContactLists::check_speeds(const Rows& rows, const Bed& bed) const {
     const double speed = largest_component(v), limit = fastest_step * rows.radius[i] / step_s_;
     if (is_finite(v) && is_finite(p) && speed <= limit) continue;
     const double advised = 0.5 * fastest_step * rows.radius[i] / speed;
-    throw NumericalError(fmt::format(
-        "particle {} at ({:.6g}, {:.6g}, {:.6g}) m moves at {:.4g} m/s, more than {} of its radius per step of "
-        "{:.3g} s (it would tunnel) try a step of {:.2g} s, a higher Young's modulus, or starting positions with "
-        "less overlap",
-        bed.id[rows.bed_index[i]], p.x, p.y, p.z, norm(v), fastest_step, step_s_, advised));
+    throw NumericalError(
+        fmt::format("particle {} at ({:.6g}, {:.6g}, {:.6g}) m moves at {:.4g} m/s, more than {} of its "
+                    "radius per step of "
+                    "{:.3g} s (it would tunnel) try a step of {:.2g} s, a higher Young's modulus, or "
+                    "starting positions with "
+                    "less overlap",
+                    bed.id[rows.bed_index[i]], p.x, p.y, p.z, norm(v), fastest_step, step_s_, advised));
   }
 }
 
@@ -50,11 +55,13 @@ ContactLists::Motion ContactLists::measure(const Rows& rows, std::int64_t steps)
   const Vec3 moved = drift();
   const double mean_reach = norm(mean_velocity_) * step_s_ * double(steps);
   double fastest = 0, travelled = 0, near_need = 0, wall_need = 0;
-#pragma omp parallel for num_threads(static_cast<int>(shares_.size())) schedule(static) \
-    reduction(max : fastest, travelled, near_need, wall_need)
+#pragma omp parallel for num_threads(static_cast <int>(shares_.size())) schedule(static) \
+    reduction(max                                                                        \
+              : fastest, travelled, near_need, wall_need)
   for (std::int64_t i = 0; i < rows.count; ++i) {
     const Vec3 p = rows.position_of(i);
-    const double speed = largest_component(rows.velocity_of(i) - mean_velocity_), margin = margin_of(speed, steps);
+    const double speed = largest_component(rows.velocity_of(i) - mean_velocity_),
+                 margin = margin_of(speed, steps);
     fastest = std::max(fastest, speed);
     if (stale_) continue;
     const Vec3 a{near_origin_[3 * i], near_origin_[3 * i + 1], near_origin_[3 * i + 2]};
@@ -70,7 +77,7 @@ ContactLists::Motion ContactLists::measure(const Rows& rows, std::int64_t steps)
 }
 
 void ContactLists::set_reaches(Rows& rows, std::int64_t steps) {
-#pragma omp parallel for num_threads(static_cast<int>(shares_.size())) schedule(static)
+#pragma omp parallel for num_threads(static_cast <int>(shares_.size())) schedule(static)
   for (std::int64_t i = 0; i < rows.count; ++i) {
     const Vec3 v = rows.velocity_of(i);
     const double speed = largest_component(v - mean_velocity_);
@@ -84,13 +91,14 @@ void ContactLists::sort_rows(Rows& rows, const Periods& periods, const Bed& bed,
   const auto order = grid_.sort(rows, periods, bed.box, cell_m, static_cast<int>(shares_.size()));
   const auto permute = [&](auto& column, int width) {
     auto sorted = column;
-#pragma omp parallel for num_threads(static_cast<int>(shares_.size())) schedule(static)
+#pragma omp parallel for num_threads(static_cast <int>(shares_.size())) schedule(static)
     for (std::int64_t i = 0; i < rows.count; ++i)
       std::copy_n(column.begin() + width * std::int64_t(order[i]), width, sorted.begin() + width * i);
     column.swap(sorted);
   };
   permute(rows.position, 4), permute(rows.velocity, 8), permute(rows.bed_index, 1);
-  if (!rows.uniform) permute(rows.kick, 8), permute(rows.radius, 1), permute(rows.mass, 1), permute(rows.material, 1);
+  if (!rows.uniform)
+    permute(rows.kick, 8), permute(rows.radius, 1), permute(rows.mass, 1), permute(rows.material, 1);
   for (std::int64_t i = 0; i < rows.count; ++i) rows.row_of[rows.bed_index[i]] = static_cast<std::int32_t>(i);
   near_origin_.resize(3 * rows.count);
   for (std::int64_t i = 0; i < rows.count; ++i)
@@ -102,9 +110,11 @@ void ContactLists::find_near(const Rows& rows, const Model& model, const Periods
   Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
   for (std::int64_t i = 0; i < n; ++i)
     for (int a = 0; a < 3; ++a)
-      low[a] = std::min(low[a], rows.position[4 * i + a]), high[a] = std::max(high[a], rows.position[4 * i + a]);
+      low[a] = std::min(low[a], rows.position[4 * i + a]),
+      high[a] = std::max(high[a], rows.position[4 * i + a]);
   double extent = 0;
-  for (int a = 0; a < 3; ++a) extent = std::max(extent, periods.length[a] > 0 ? periods.length[a] : high[a] - low[a]);
+  for (int a = 0; a < 3; ++a)
+    extent = std::max(extent, periods.length[a] > 0 ? periods.length[a] : high[a] - low[a]);
   const double rounding = 1e-6 * extent;  // of single precision in the search
   std::vector<float> coordinate[4];
   for (auto& c : coordinate) c.resize(n + 16);
@@ -140,11 +150,12 @@ void ContactLists::find_near(const Rows& rows, const Model& model, const Periods
       grid_.ranges_behind(i, [&](std::int32_t begin, std::int32_t end) {
         if (begin >= end) return;
         if (end - begin + 32 > static_cast<std::int32_t>(found.size())) found.resize(2 * (end - begin) + 32);
-        const auto count = kernels_.find_close(&coordinate[0][begin], &coordinate[1][begin], &coordinate[2][begin],
-                                               &coordinate[3][begin], p, period, inverse, begin, end - begin,
-                                               found.data());
+        const auto count =
+            kernels_.find_close(&coordinate[0][begin], &coordinate[1][begin], &coordinate[2][begin],
+                                &coordinate[3][begin], p, period, inverse, begin, end - begin, found.data());
         const auto row = static_cast<std::int32_t>(i);
-        if (begin >= share.range.begin && end <= share.range.end) return share.own.add_near(row, found.data(), count);
+        if (begin >= share.range.begin && end <= share.range.end)
+          return share.own.add_near(row, found.data(), count);
         for (std::int64_t k = 0; k < count; ++k) {
           const auto j = found[k];
           if (j >= share.range.begin && j < share.range.end) {
@@ -167,7 +178,7 @@ void ContactLists::find_near(const Rows& rows, const Model& model, const Periods
 void ContactLists::find_walls(const Rows& rows, const Periods& periods, const WallSurface& surface) {
   wall_origin_.resize(3 * rows.count);
   const Vec3 moved = drift();
-#pragma omp parallel num_threads(static_cast<int>(shares_.size()))
+#pragma omp parallel num_threads(static_cast <int>(shares_.size()))
   {
     Share& share = shares_[omp_get_thread_num()];
     share.walls.find_near(surface, grid_, rows, periods, share.range, half_skin_m_, moved, half_skin_m_);
@@ -182,7 +193,8 @@ std::int64_t ContactLists::prepare(Rows& rows, Model& model, const Periods& peri
   ++refreshes;
   step_s_ = model.constants.step_s;
   std::int64_t steps = schedule_.refresh_every;
-  spare_speed_m_s_ = std::max(spare_speed_m_s_, smallest_margin * model.largest_radius / (step_s_ * double(steps)));
+  spare_speed_m_s_ =
+      std::max(spare_speed_m_s_, smallest_margin * model.largest_radius / (step_s_ * double(steps)));
   check_speeds(rows, bed);
   Motion motion = measure(rows, steps);
   const bool due = schedule_.rebuild_every > 0 && steps_since_sort_ >= schedule_.rebuild_every;
@@ -230,7 +242,7 @@ std::int64_t ContactLists::prepare(Rows& rows, Model& model, const Periods& peri
   for (int a = 0; a < 3; ++a) model.move.mean_velocity[a] = mean_velocity_[a];
   const double mean_reach = norm(mean_velocity_) * step_s_ * double(steps);
   const bool varied = !rows.uniform;
-#pragma omp parallel num_threads(static_cast<int>(shares_.size()))
+#pragma omp parallel num_threads(static_cast <int>(shares_.size()))
   {
     const int t = omp_get_thread_num();
     Share& share = shares_[t];
@@ -238,7 +250,8 @@ std::int64_t ContactLists::prepare(Rows& rows, Model& model, const Periods& peri
       list->refresh(kernels_, rows.view(), model.constants, memory_table_);
       if (varied) list->fill_coefficients(rows, bed.materials);
     }
-    share.walls.refresh(surface, rows, periods, bed.materials, mean_reach, static_cast<std::int32_t>(rows.count + 2 * t));
+    share.walls.refresh(surface, rows, periods, bed.materials, mean_reach,
+                        static_cast<std::int32_t>(rows.count + 2 * t));
   }
   life_ = promised_ = steps;
   return life_;
@@ -256,7 +269,7 @@ void ContactLists::spend(std::int64_t steps, bool limit_broken) {
 std::vector<Memory> ContactLists::collect(const Rows& rows) const {
   if (stale_) return memories_;
   std::vector<std::vector<Memory>> parts(shares_.size());
-#pragma omp parallel num_threads(static_cast<int>(shares_.size()))
+#pragma omp parallel num_threads(static_cast <int>(shares_.size()))
   {
     const int t = omp_get_thread_num();
     shares_[t].own.collect(rows, false, parts[t]);

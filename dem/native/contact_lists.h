@@ -24,7 +24,8 @@ struct Share {
 /// How often lists are made anew; results do not depend on it.
 struct ListSchedule {
   int refresh_every = 16;  ///< steps a tight list is made to live
-  int rebuild_every = 0;   ///< 0: near lists when someone has moved through the skin; else also every so many steps
+  int rebuild_every =
+      0;  ///< 0: near lists when someone has moved through the skin; else also every so many steps
 };
 
 /// Keeps the near and tight lists of all threads in step with the rows.
@@ -39,7 +40,8 @@ class ContactLists {
   void walls_changed() { walls_stale_ = true, life_ = 0; }
   /// Makes the lists good for at least one step; sets reaches and speed limits in the rows. Returns the steps
   /// they are good for while no speed limit is broken. Throws NumericalError for a tunnelling particle.
-  std::int64_t prepare(Rows& rows, Model& model, const Periods& periods, const Bed& bed, const WallSurface& surface);
+  std::int64_t prepare(Rows& rows, Model& model, const Periods& periods, const Bed& bed,
+                       const WallSurface& surface);
   /// `steps` were done; `limit_broken`: the lists must be refreshed whatever was promised.
   void spend(std::int64_t steps, bool limit_broken);
 
@@ -53,10 +55,10 @@ class ContactLists {
 
  private:
   struct Motion {
-    double fastest = 0;       ///< largest |v - mean| component, m/s
-    double travelled = 0;     ///< largest distance moved since the near list, beside the mean
-    double near_need = 0;     ///< largest distance moved + reach margin
-    double wall_need = 0;     ///< the same without the mean, since the wall list
+    double fastest = 0;    ///< largest |v - mean| component, m/s
+    double travelled = 0;  ///< largest distance moved since the near list, beside the mean
+    double near_need = 0;  ///< largest distance moved + reach margin
+    double wall_need = 0;  ///< the same without the mean, since the wall list
   };
   double margin_of(double speed, std::int64_t steps) const;
   Motion measure(const Rows& rows, std::int64_t steps) const;

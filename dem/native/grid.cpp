@@ -19,7 +19,8 @@ void Grid::fit(const Rows& rows, const Periods& periods, const Box& box, double 
   const Vec3 extent = high - low;
   axis_[0] = 0, axis_[1] = 1, axis_[2] = 2;
   std::sort(axis_, axis_ + 3, [&](int a, int b) { return extent[a] > extent[b]; });
-  for (double size = cell_m;; size *= 1.26) {  // far outliers: coarser cells, never more than a few per particle
+  for (double size = cell_m;;
+       size *= 1.26) {  // far outliers: coarser cells, never more than a few per particle
     double cells = 1;
     for (int k = 0; k < 3; ++k) {
       const double n = std::max(1.0, std::floor(extent[axis_[k]] / size));

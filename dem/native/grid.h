@@ -12,12 +12,14 @@ namespace granrad::native {
 class Grid {
  public:
   /// Order of the rows (row -> old row) that sorts them by cell.
-  std::vector<std::int32_t> sort(const Rows& rows, const Periods& periods, const Box& box, double cell_m, int threads);
+  std::vector<std::int32_t> sort(const Rows& rows, const Periods& periods, const Box& box, double cell_m,
+                                 int threads);
   /// Rows of the neighbouring column segments of the cell of row i that stand behind row i (half of all
   /// neighbours): calls visit(begin, end) for up to five ranges.
   template <class Visit>
   void ranges_behind(std::int64_t i, Visit visit) const {
-    const int key = key_of_row_[i], c = key % count_[2], b = key / count_[2] % count_[1], a = key / count_[2] / count_[1];
+    const int key = key_of_row_[i], c = key % count_[2], b = key / count_[2] % count_[1],
+              a = key / count_[2] / count_[1];
     forward(a, b, c, static_cast<std::int32_t>(i) + 1, visit);
   }
   /// Rows whose centre stood in the cells touching the box when sorted: visit(begin, end).
@@ -29,7 +31,8 @@ class Grid {
       if (periodic_[k]) low[k] = 0, high[k] = count_[k] - 1;
     }
     for (int a = low[0]; a <= high[0]; ++a)
-      for (int b = low[1]; b <= high[1]; ++b) visit(begin_of(a, b, low[2]), begin_of(a, b, high[2]) + length_of(a, b, high[2]));
+      for (int b = low[1]; b <= high[1]; ++b)
+        visit(begin_of(a, b, low[2]), begin_of(a, b, high[2]) + length_of(a, b, high[2]));
   }
 
  private:
@@ -51,8 +54,10 @@ class Grid {
       n = (n + count_[k]) % count_[k];
     }
     const int last = count_[2] - 1;
-    if (c > 0 && c < last) return visit(begin_of(a, b, c - 1), begin_of(a, b, c + 1) + length_of(a, b, c + 1));
-    visit(begin_of(a, b, c > 0 ? c - 1 : 0), begin_of(a, b, c < last ? c + 1 : last) + length_of(a, b, c < last ? c + 1 : last));
+    if (c > 0 && c < last)
+      return visit(begin_of(a, b, c - 1), begin_of(a, b, c + 1) + length_of(a, b, c + 1));
+    visit(begin_of(a, b, c > 0 ? c - 1 : 0),
+          begin_of(a, b, c < last ? c + 1 : last) + length_of(a, b, c < last ? c + 1 : last));
     if (!periodic_[2] || last == 0) return;
     if (c == 0) visit(begin_of(a, b, last), begin_of(a, b, last) + length_of(a, b, last));
     if (c == last) visit(begin_of(a, b, 0), begin_of(a, b, 0) + length_of(a, b, 0));
@@ -62,7 +67,8 @@ class Grid {
     const int last = count_[2] - 1;
     visit(behind, begin_of(a, b, c) + length_of(a, b, c));
     if (c < last) visit(begin_of(a, b, c + 1), begin_of(a, b, c + 1) + length_of(a, b, c + 1));
-    if (c == last && last > 0 && periodic_[2]) visit(begin_of(a, b, 0), begin_of(a, b, 0) + length_of(a, b, 0));
+    if (c == last && last > 0 && periodic_[2])
+      visit(begin_of(a, b, 0), begin_of(a, b, 0) + length_of(a, b, 0));
     if (count_[1] > 1) segment(a, b + 1, c, visit);
     if (count_[0] == 1) return;
     segment(a + 1, b, c, visit);

@@ -5,7 +5,8 @@
 // for AVX-512 must never be the copy the linker keeps for everyone.
 namespace granrad::native {
 
-inline constexpr std::int64_t chunk = 32;  ///< contacts between gathering and scattering; their data stays in L1
+inline constexpr std::int64_t chunk =
+    32;  ///< contacts between gathering and scattering; their data stays in L1
 
 template <class S>
 struct KernelBodies {
@@ -23,7 +24,7 @@ struct KernelBodies {
   };
 
   GRANRAD_INLINE HertzMindlin<V> broadcast(const HertzMindlin<double>& c) {
-    return {S::set(c.effective_radius), S::set(c.normal),   S::set(c.tangential), S::set(c.normal_damping),
+    return {S::set(c.effective_radius),   S::set(c.normal),   S::set(c.tangential), S::set(c.normal_damping),
             S::set(c.tangential_damping), S::set(c.friction), S::set(c.rolling)};
   }
   GRANRAD_INLINE HertzMindlin<V> varied_law(const ContactView& c, std::int64_t k) {
@@ -48,13 +49,15 @@ struct KernelBodies {
 
   /// One pack of contacts between particles.
   template <bool varied>
-  GRANRAD_INLINE void contact(const ContactView& c, const StepConstants& constants, const HertzMindlin<V>& uniform,
-                              std::int64_t k, const Gathered& in, Scattered& out, V& deepest) {
+  GRANRAD_INLINE void contact(const ContactView& c, const StepConstants& constants,
+                              const HertzMindlin<V>& uniform, std::int64_t k, const Gathered& in,
+                              Scattered& out, V& deepest) {
     const V *d = in.away, half = S::set(0.5);
     const V square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
     V ri, rj;
     if constexpr (varied)
-      ri = S::load(c.varied + radius_first * c.stride + k), rj = S::load(c.varied + radius_second * c.stride + k);
+      ri = S::load(c.varied + radius_first * c.stride + k),
+      rj = S::load(c.varied + radius_second * c.stride + k);
     else
       ri = rj = S::set(constants.radius);
     const V sum = ri + rj;
@@ -136,8 +139,11 @@ struct KernelBodies {
 
   template <bool first_only>
   static double pair_contacts(const RowView& r, const ContactView& c, const StepConstants& k) {
-    if (c.varied) return k.periodic ? pair_loop<true, true, first_only>(r, c, k) : pair_loop<false, true, first_only>(r, c, k);
-    return k.periodic ? pair_loop<true, false, first_only>(r, c, k) : pair_loop<false, false, first_only>(r, c, k);
+    if (c.varied)
+      return k.periodic ? pair_loop<true, true, first_only>(r, c, k)
+                        : pair_loop<false, true, first_only>(r, c, k);
+    return k.periodic ? pair_loop<true, false, first_only>(r, c, k)
+                      : pair_loop<false, false, first_only>(r, c, k);
   }
 
   template <bool varied>
@@ -188,15 +194,18 @@ struct KernelBodies {
     return largest(deepest);
   }
 
-  static double plane_contacts(const RowView& r, const ContactView& c, const PlaneView& p, const StepConstants& k) {
+  static double plane_contacts(const RowView& r, const ContactView& c, const PlaneView& p,
+                               const StepConstants& k) {
     return c.varied ? plane_loop<true>(r, c, p, k) : plane_loop<false>(r, c, p, k);
   }
 
-  static bool move(const RowView& rows, std::int64_t begin, std::int64_t end, const MoveConstants& m, bool last) {
+  static bool move(const RowView& rows, std::int64_t begin, std::int64_t end, const MoveConstants& m,
+                   bool last) {
     const auto gravity = S::row_load(m.gravity_kick);
     bool too_fast = false;
     for (std::int64_t i = begin; i < end; ++i) {
-      const auto push = S::row_multiply(S::row_take(rows.force + 8 * i), S::row_load(m.kick + m.kick_stride * i));
+      const auto push =
+          S::row_multiply(S::row_take(rows.force + 8 * i), S::row_load(m.kick + m.kick_stride * i));
       const auto v = S::row_add(S::row_add(S::row_load(rows.velocity + 8 * i), push), gravity);
       S::row_store(rows.velocity + 8 * i, v);
       too_fast |= S::row_too_fast(v, m.mean_velocity);
@@ -228,9 +237,9 @@ struct KernelBodies {
     return c.periodic ? select_loop<true>(rows, c, i, j, count, first, second, source)
                       : select_loop<false>(rows, c, i, j, count, first, second, source);
   }
-  static std::int64_t find_close(const float* x, const float* y, const float* z, const float* reach, const float p[4],
-                                 const float period[3], const float inverse_period[3], std::int32_t first,
-                                 std::int32_t count, std::int32_t* out) {
+  static std::int64_t find_close(const float* x, const float* y, const float* z, const float* reach,
+                                 const float p[4], const float period[3], const float inverse_period[3],
+                                 std::int32_t first, std::int32_t count, std::int32_t* out) {
     return S::find_close(x, y, z, reach, p, period, inverse_period, first, count, out);
   }
 

@@ -7,7 +7,8 @@ namespace granrad::native {
 
 /// Rows of all particles, in the engine's own order. 64-byte aligned.
 struct RowView {
-  double* position;     ///< [4] x, y, z at the middle of the step, reach (radius + what it may move until the next refresh)
+  double* position;     ///< [4] x, y, z at the middle of the step, reach (radius + what it may move until the
+                        ///< next refresh)
   double* velocity;     ///< [8] v, speed limit, omega, 0
   std::int64_t* force;  ///< [8] F, 0, torque, 0, in fixed point; zero between steps
 };
@@ -19,17 +20,27 @@ struct ContactView {
   const std::int32_t* second;
   std::int64_t count;
   double* displacement[3];
-  const double* varied;  ///< nullptr: `StepConstants::pair`; else columns of `stride` doubles, see VariedColumn
+  const double*
+      varied;  ///< nullptr: `StepConstants::pair`; else columns of `stride` doubles, see VariedColumn
   std::int64_t stride;
 };
 
 /// Columns of coefficients of contacts that are not all alike.
 enum VariedColumn {
-  effective_radius, normal, tangential, normal_damping, tangential_damping, friction, rolling,
-  radius_first, radius_second, varied_columns
+  effective_radius,
+  normal,
+  tangential,
+  normal_damping,
+  tangential_damping,
+  friction,
+  rolling,
+  radius_first,
+  radius_second,
+  varied_columns
 };
 
-/// Walls that act as planes: rows {point, 0, unit normal, 0} of eight and velocity rows {v, 0} of four doubles.
+/// Walls that act as planes: rows {point, 0, unit normal, 0} of eight and velocity rows {v, 0} of four
+/// doubles.
 struct PlaneView {
   const double* geometry;
   const double* velocity;
@@ -47,10 +58,10 @@ struct StepConstants {
 
 /// What moving the particles needs. kick rows {dt/m x3, 0, dt/I x3, 0} divided by the fixed-point scales.
 struct MoveConstants {
-  const double* kick;        ///< aligned like the rows
-  std::int64_t kick_stride;   ///< 0: one row for all, 8: one each
-  alignas(64) double gravity_kick[8];    ///< {g dt, 0 ...}
-  double mean_velocity[4];    ///< speed limits are relative to it
+  const double* kick;                  ///< aligned like the rows
+  std::int64_t kick_stride;            ///< 0: one row for all, 8: one each
+  alignas(64) double gravity_kick[8];  ///< {g dt, 0 ...}
+  double mean_velocity[4];             ///< speed limits are relative to it
   double half_step_s;
 };
 
@@ -66,13 +77,15 @@ struct Kernels {
   double (*pair_contacts_first)(const RowView&, const ContactView&, const StepConstants&);
   /// `second` numbers planes.
   double (*plane_contacts)(const RowView&, const ContactView&, const PlaneView&, const StepConstants&);
-  /// v += F dt/m + g dt, omega likewise, x += v dt/2, forces cleared, rows [begin, end). Unless `last`, x moves
-  /// another half step, to the middle of the next one. True if a speed limit is broken (or not a number).
+  /// v += F dt/m + g dt, omega likewise, x += v dt/2, forces cleared, rows [begin, end). Unless `last`, x
+  /// moves another half step, to the middle of the next one. True if a speed limit is broken (or not a
+  /// number).
   bool (*move)(const RowView&, std::int64_t begin, std::int64_t end, const MoveConstants&, bool last);
   /// Keeps the pairs closer than the sum of their reaches: rows into `first`, `second`, their numbers into
   /// `source`. `count` is padded to a multiple of 8. Returns how many; writes up to 8 entries beyond.
-  std::int64_t (*select_close)(const RowView&, const StepConstants&, const std::int32_t* i, const std::int32_t* j,
-                               std::int64_t count, std::int32_t* first, std::int32_t* second, std::int32_t* source);
+  std::int64_t (*select_close)(const RowView&, const StepConstants&, const std::int32_t* i,
+                               const std::int32_t* j, std::int64_t count, std::int32_t* first,
+                               std::int32_t* second, std::int32_t* source);
   decltype(&ScalarPack::find_close) find_close;
 };
 

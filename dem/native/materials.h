@@ -16,7 +16,8 @@ struct ContactBody {
 /// their geometric means (LAMMPS' mixing rule): a frictionless partner makes a frictionless contact.
 HertzMindlin<double> pair_coefficients(const ContactBody& a, const ContactBody& b);
 
-/// Contact with a wall: the wall is made of the particle's own material, R* = R and m* = m (as LIGGGHTS does).
+/// Contact with a wall: the wall is made of the particle's own material, R* = R and m* = m (as LIGGGHTS
+/// does).
 HertzMindlin<double> wall_coefficients(const ContactBody& body);
 
 }  // namespace granrad::native

@@ -16,7 +16,9 @@ double force_bound(const HertzMindlin<double>& c, double overlap, double speed) 
   return normal * (1 + c.friction) + c.tangential_damping * std::sqrt(root) * speed;
 }
 
-double power_of_two_below(double x) { return std::exp2(std::floor(std::log2(x))); }
+double power_of_two_below(double x) {
+  return std::exp2(std::floor(std::log2(x)));
+}
 
 }  // namespace
 

@@ -21,11 +21,11 @@ bool same_walls(const std::vector<Wall>& a, const std::vector<Wall>& b) {
   });
 }
 
-/// Threads that find enough work to be worth their barriers.
+/// As many threads as asked for; else as find enough work to be worth their barriers.
 int useful_threads(int asked, std::int64_t particles) {
-  constexpr std::int64_t particles_each = 100;
-  const int most = asked > 0 ? asked : omp_get_max_threads();
-  return static_cast<int>(std::clamp<std::int64_t>(particles / particles_each, 1, most));
+  constexpr std::int64_t particles_each = 400;
+  if (asked > 0) return asked;
+  return static_cast<int>(std::clamp<std::int64_t>(particles / particles_each, 1, omp_get_max_threads()));
 }
 
 }  // namespace
@@ -67,7 +67,8 @@ void NativeEngine::Impl::load(const Bed& bed) {
   const int threads = lists ? static_cast<int>(lists->shares().size()) : 0;
   const int wanted = useful_threads(options.threads, static_cast<std::int64_t>(bed.size()));
   const bool same_box = periods && bed.box.min == box.min && bed.box.max == box.max &&
-                        (periods->length[0] > 0) == bed.periodic[0] && (periods->length[1] > 0) == bed.periodic[1] &&
+                        (periods->length[0] > 0) == bed.periodic[0] &&
+                        (periods->length[1] > 0) == bed.periodic[1] &&
                         (periods->length[2] > 0) == bed.periodic[2];
   if (threads != wanted || !same_box) {
     lists = std::make_unique<ContactLists>(kernels, wanted, options.schedule);
@@ -91,18 +92,20 @@ std::int64_t NativeEngine::Impl::run(std::int64_t steps, bool finishes, bool& li
   std::int64_t done = 0;
   limit_broken = false;
   model.move.kick = rows.uniform ? model.kick_row.data() : rows.kick.data();
-#pragma omp parallel num_threads(static_cast<int>(shares.size()))
+#pragma omp parallel num_threads(static_cast <int>(shares.size()))
   {
     Share& share = shares[omp_get_thread_num()];
     const RowView view = rows.view();
     double deepest = -1;
     bool stop = false;
     for (std::int64_t k = 0; k < steps && !stop; ++k) {
-      deepest = std::max({deepest, kernels.pair_contacts(view, share.own.view(), model.constants),
-                          kernels.pair_contacts_first(view, share.cross.view(), model.constants),
-                          share.walls.add_forces(kernels, *surface, rows, *periods, model.constants, transfer.materials())});
+      deepest = std::max(
+          {deepest, kernels.pair_contacts(view, share.own.view(), model.constants),
+           kernels.pair_contacts_first(view, share.cross.view(), model.constants),
+           share.walls.add_forces(kernels, *surface, rows, *periods, model.constants, transfer.materials())});
 #pragma omp barrier
-      share.too_fast = kernels.move(view, share.range.begin, share.range.end, model.move, finishes && k + 1 == steps);
+      share.too_fast =
+          kernels.move(view, share.range.begin, share.range.end, model.move, finishes && k + 1 == steps);
 #pragma omp barrier
       for (const auto& s : shares) stop |= s.too_fast;
 #pragma omp master
@@ -122,7 +125,8 @@ void NativeEngine::Impl::check_overlaps(const Bed& bed) {
     for (std::int64_t k = 0; k < s.own.near_count() + s.cross.near_count(); ++k) {
       const bool cross = k >= s.own.near_count();
       const auto& list = cross ? s.cross : s.own;
-      const auto i = list.near_first(cross ? k - s.own.near_count() : k), j = list.near_second(cross ? k - s.own.near_count() : k);
+      const auto i = list.near_first(cross ? k - s.own.near_count() : k),
+                 j = list.near_second(cross ? k - s.own.near_count() : k);
       const double sum = rows.radius[i] + rows.radius[j];
       const double depth = (sum - norm(periods->nearest(rows.position_of(i) - rows.position_of(j)))) /
                            std::min(rows.radius[i], rows.radius[j]);
@@ -132,10 +136,11 @@ void NativeEngine::Impl::check_overlaps(const Bed& bed) {
       where = fmt::format("of particles {} and {} at ({:.6g}, {:.6g}, {:.6g}) m", bed.id[rows.bed_index[i]],
                           bed.id[rows.bed_index[j]], p.x, p.y, p.z);
     }
-  throw NumericalError(fmt::format(
-      "an overlap {} exceeds {} of the radius (beyond the contact model) try a smaller step, a higher Young's "
-      "modulus, or starting positions that overlap less",
-      where, deepest_overlap));
+  throw NumericalError(
+      fmt::format("an overlap {} exceeds {} of the radius (beyond the contact model) try a smaller step, a "
+                  "higher Young's "
+                  "modulus, or starting positions that overlap less",
+                  where, deepest_overlap));
 }
 
 NativeEngine::NativeEngine(const Bed& bed, const Vec3& gravity, double step_s, const EngineOptions& options)
@@ -149,7 +154,8 @@ NativeEngine::~NativeEngine() = default;
 void NativeEngine::advance(Bed& bed, double until_s) {
   Impl& e = *impl_;
   const double origin_s = bed.time_s - double(bed.step) * e.step_s;
-  const double start_s = std::abs(origin_s) < 1e-6 * e.step_s ? 0 : origin_s;  // rounding of the division is no offset
+  const double start_s =
+      std::abs(origin_s) < 1e-6 * e.step_s ? 0 : origin_s;  // rounding of the division is no offset
   const auto last = static_cast<std::int64_t>(std::ceil((until_s - start_s) / e.step_s - 1e-6));
   if (last <= bed.step) return;
   e.load(bed);
@@ -159,7 +165,8 @@ void NativeEngine::advance(Bed& bed, double until_s) {
     const double opens = WallSurface::next_change_s(e.walls, time_at(step));
     auto steps = std::min(last - step, e.lists->prepare(e.rows, e.model, *e.periods, bed, *e.surface));
     if (opens < time_at(step + steps))
-      steps = std::clamp<std::int64_t>(static_cast<std::int64_t>(std::ceil((opens - start_s) / e.step_s)) - step, 1, steps);
+      steps = std::clamp<std::int64_t>(
+          static_cast<std::int64_t>(std::ceil((opens - start_s) / e.step_s)) - step, 1, steps);
     bool limit_broken = false;
     const auto done = e.run(steps, step + steps == last, limit_broken);
     step += done;
@@ -175,7 +182,9 @@ void NativeEngine::advance(Bed& bed, double until_s) {
   bed.time_s = time_at(last);
 }
 
-NearPairs NativeEngine::near_pairs(const Bed& bed, double max_gap_m) { return granrad::near_pairs(bed, max_gap_m); }
+NearPairs NativeEngine::near_pairs(const Bed& bed, double max_gap_m) {
+  return granrad::near_pairs(bed, max_gap_m);
+}
 
 EngineCounts NativeEngine::counts() const {
   EngineCounts c;
@@ -188,8 +197,9 @@ EngineCounts NativeEngine::counts() const {
   }
   c.rebuilds = impl_->lists->rebuilds, c.refreshes = impl_->lists->refreshes;
   const auto& r = impl_->rows;
-  const double rows = 8.0 * double(r.position.capacity() + r.velocity.capacity() + r.force.capacity() + r.kick.capacity() +
-                                   r.radius.capacity() + r.mass.capacity()) + 4.0 * double(3 * r.bed_index.capacity());
+  const double rows = 8.0 * double(r.position.capacity() + r.velocity.capacity() + r.force.capacity() +
+                                   r.kick.capacity() + r.radius.capacity() + r.mass.capacity()) +
+                      4.0 * double(3 * r.bed_index.capacity());
   c.bytes_per_particle = r.count > 0 ? (rows + double(impl_->lists->bytes())) / double(r.count) : 0;
   return c;
 }
@@ -198,7 +208,8 @@ EngineCounts NativeEngine::counts() const {
 
 namespace granrad {
 
-std::unique_ptr<Engine> make_native_engine(const Bed& bed, const Vec3& gravity_m_s2, double step_s, int threads) {
+std::unique_ptr<Engine> make_native_engine(const Bed& bed, const Vec3& gravity_m_s2, double step_s,
+                                           int threads) {
   native::EngineOptions options;
   options.threads = threads;
   return std::make_unique<native::NativeEngine>(bed, gravity_m_s2, step_s, options);

@@ -5,7 +5,9 @@
 namespace granrad::native {
 namespace {
 constexpr std::int64_t look_ahead = 64;  ///< entries behind the end that prefetching may read
-bool is_zero(double x, double y, double z) { return x == 0 && y == 0 && z == 0; }
+bool is_zero(double x, double y, double z) {
+  return x == 0 && y == 0 && z == 0;
+}
 }  // namespace
 
 void MemoryTable::build(const std::vector<Memory>& memories, const Rows& rows) {
@@ -51,7 +53,8 @@ void PairList::refresh(const Kernels& kernels, const RowView& rows, const StepCo
                                           static_cast<std::int64_t>(near_i_.size()), next_first_.data(),
                                           next_second_.data(), next_source_.data());
   const auto padded = (found + 7) / 8 * 8;
-  for (auto k = found; k < padded + look_ahead; ++k) next_first_[k] = idle_row_, next_second_[k] = idle_row_ + 1;
+  for (auto k = found; k < padded + look_ahead; ++k)
+    next_first_[k] = idle_row_, next_second_[k] = idle_row_ + 1;
   for (auto& column : next_displacement_) column.resize(padded);
   const auto put = [&](std::int64_t k, const Vec3& s) {
     for (int a = 0; a < 3; ++a) next_displacement_[a][k] = s[a];
@@ -82,17 +85,21 @@ void PairList::fill_coefficients(const Rows& rows, const std::vector<Material>& 
   for (std::int64_t k = 0; k < tight_count_; ++k) {
     const auto a = body(first_[k]), b = body(second_[k]);
     const auto c = pair_coefficients(a, b);
-    const double columns[varied_columns] = {c.effective_radius, c.normal,   c.tangential, c.normal_damping,
-                                            c.tangential_damping, c.friction, c.rolling,  a.radius_m, b.radius_m};
+    const double columns[varied_columns] = {
+        c.effective_radius, c.normal,  c.tangential, c.normal_damping, c.tangential_damping,
+        c.friction,         c.rolling, a.radius_m,   b.radius_m};
     for (int n = 0; n < varied_columns; ++n) varied_[n * padded_ + k] = columns[n];
   }
   varied_used_ = true;
 }
 
 ContactView PairList::view() {
-  return {first_.data(), second_.data(), padded_,
+  return {first_.data(),
+          second_.data(),
+          padded_,
           {displacement_[0].data(), displacement_[1].data(), displacement_[2].data()},
-          varied_used_ ? varied_.data() : nullptr, padded_};
+          varied_used_ ? varied_.data() : nullptr,
+          padded_};
 }
 
 void PairList::collect(const Rows& rows, bool twins, std::vector<Memory>& memories) const {
@@ -115,7 +122,8 @@ std::int64_t PairList::touching_count() const {
 }
 
 std::size_t PairList::bytes() const {
-  return 4 * (near_i_.capacity() + near_j_.capacity() + 2 * (first_.capacity() + second_.capacity() + source_.capacity())) +
+  return 4 * (near_i_.capacity() + near_j_.capacity() +
+              2 * (first_.capacity() + second_.capacity() + source_.capacity())) +
          8 * (6 * displacement_[0].capacity() + varied_.capacity());
 }
 

@@ -25,9 +25,9 @@ class MemoryTable {
   std::vector<Entry> entries_;
 };
 
-/// The pairs one thread works on, in two lists. Near: gap below a skin, found with the grid, kept while nobody
-/// has moved through the skin. Tight: those of the near list that can touch before the next refresh; only
-/// these are visited each step, and they carry the springs.
+/// The pairs one thread works on, in two lists. Near: gap below a skin, found with the grid, kept while
+/// nobody has moved through the skin. Tight: those of the near list that can touch before the next refresh;
+/// only these are visited each step, and they carry the springs.
 class PairList {
  public:
   void clear_near() { near_i_.clear(), near_j_.clear(); }
@@ -39,7 +39,8 @@ class PairList {
 
   /// Chooses the tight pairs by the reaches in the rows and carries the springs over, from the list before
   /// or, after finish_near, from `memories`.
-  void refresh(const Kernels& kernels, const RowView& rows, const StepConstants& constants, const MemoryTable& memories);
+  void refresh(const Kernels& kernels, const RowView& rows, const StepConstants& constants,
+               const MemoryTable& memories);
   /// Fills the coefficient columns of contacts that are not all alike.
   void fill_coefficients(const Rows& rows, const std::vector<Material>& materials);
   ContactView view();

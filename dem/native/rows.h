@@ -22,12 +22,19 @@ struct Rows {
   bool uniform = true;                  ///< one radius, one material, no rolling friction
 
   RowView view() { return {position.data(), velocity.data(), force.data()}; }
-  Vec3 position_of(std::int64_t i) const { return {position[4 * i], position[4 * i + 1], position[4 * i + 2]}; }
-  Vec3 velocity_of(std::int64_t i) const { return {velocity[8 * i], velocity[8 * i + 1], velocity[8 * i + 2]}; }
-  Vec3 spin_of(std::int64_t i) const { return {velocity[8 * i + 4], velocity[8 * i + 5], velocity[8 * i + 6]}; }
+  Vec3 position_of(std::int64_t i) const {
+    return {position[4 * i], position[4 * i + 1], position[4 * i + 2]};
+  }
+  Vec3 velocity_of(std::int64_t i) const {
+    return {velocity[8 * i], velocity[8 * i + 1], velocity[8 * i + 2]};
+  }
+  Vec3 spin_of(std::int64_t i) const {
+    return {velocity[8 * i + 4], velocity[8 * i + 5], velocity[8 * i + 6]};
+  }
 };
 
-/// A tangential spring, free of the order of rows: `first` is a Bed index, `second` a Bed index or -1 - feature.
+/// A tangential spring, free of the order of rows: `first` is a Bed index, `second` a Bed index or -1 -
+/// feature.
 struct Memory {
   std::int32_t first;
   std::int64_t second;

@@ -33,7 +33,8 @@ struct Avx2Pack {
     const V magic = set(0x1.8p52);
     const V upper = a * set(0x1p-32) + magic;
     const V lower = (a - (upper - magic) * set(0x1p32)) + magic;
-    return _mm256_add_epi64(_mm256_slli_epi64((__m256i)upper, 32), _mm256_sub_epi64((__m256i)lower, (__m256i)magic));
+    return _mm256_add_epi64(_mm256_slli_epi64((__m256i)upper, 32),
+                            _mm256_sub_epi64((__m256i)lower, (__m256i)magic));
   }
   /// 64-bit integers to doubles, rounded once: 2^84 + 2^52 magic for the two halves.
   GRANRAD_INLINE __m256d from_fixed(__m256i q) {
@@ -49,7 +50,8 @@ struct Avx2Pack {
     c[0] = _mm256_permute2f128_pd(l0, l1, 0x20), c[2] = _mm256_permute2f128_pd(l0, l1, 0x31);
     c[1] = _mm256_permute2f128_pd(h0, h1, 0x20), c[3] = _mm256_permute2f128_pd(h0, h1, 0x31);
   }
-  GRANRAD_INLINE void pair_positions(const double* rows, const std::int32_t* i, const std::int32_t* j, V d[4]) {
+  GRANRAD_INLINE void pair_positions(const double* rows, const std::int32_t* i, const std::int32_t* j,
+                                     V d[4]) {
     const __m256d flip = _mm256_setr_pd(-0.0, -0.0, -0.0, 0.0);
     __m256d r[4];
     for (int l = 0; l < 4; ++l)
@@ -57,8 +59,8 @@ struct Avx2Pack {
                            _mm256_xor_pd(flip, _mm256_load_pd(rows + 4 * std::int64_t(j[l]))));
     transpose(r, d);
   }
-  GRANRAD_INLINE void pair_velocities(const double* rows, const std::int32_t* i, const std::int32_t* j, V u[3],
-                                      V w[3]) {
+  GRANRAD_INLINE void pair_velocities(const double* rows, const std::int32_t* i, const std::int32_t* j,
+                                      V u[3], V w[3]) {
     __m256d a[4], b[4];
     for (int l = 0; l < 4; ++l) {
       const double *p = rows + 8 * std::int64_t(i[l]), *q = rows + 8 * std::int64_t(j[l]);
@@ -149,8 +151,9 @@ struct Avx2Pack {
   }
 
   GRANRAD_INLINE std::int64_t find_close(const float* x, const float* y, const float* z, const float* reach,
-                                         const float p[4], const float period[3], const float inverse_period[3],
-                                         std::int32_t first, std::int32_t count, std::int32_t* out) {
+                                         const float p[4], const float period[3],
+                                         const float inverse_period[3], std::int32_t first,
+                                         std::int32_t count, std::int32_t* out) {
     std::int64_t found = 0;
     const float* c[3] = {x, y, z};
     for (std::int32_t q = 0; q < count; q += 8) {

@@ -54,7 +54,8 @@ struct Avx512Pack {
     c[0] = _mm512_permutex2var_pd(l0, even, l1), c[2] = _mm512_permutex2var_pd(l0, odd, l1);
     c[1] = _mm512_permutex2var_pd(h0, even, h1), c[3] = _mm512_permutex2var_pd(h0, odd, h1);
   }
-  GRANRAD_INLINE void pair_positions(const double* rows, const std::int32_t* i, const std::int32_t* j, V d[4]) {
+  GRANRAD_INLINE void pair_positions(const double* rows, const std::int32_t* i, const std::int32_t* j,
+                                     V d[4]) {
     const __m256d sign = _mm256_setr_pd(-1, -1, -1, 1);  // a product with +-1 is exact, so fusing it is too
     __m256d r[8];
     for (int l = 0; l < 8; ++l)
@@ -62,8 +63,8 @@ struct Avx512Pack {
                              _mm256_load_pd(rows + 4 * std::int64_t(i[l])));
     transpose4(r, d);
   }
-  GRANRAD_INLINE void pair_velocities(const double* rows, const std::int32_t* i, const std::int32_t* j, V u[3],
-                                      V w[3]) {
+  GRANRAD_INLINE void pair_velocities(const double* rows, const std::int32_t* i, const std::int32_t* j,
+                                      V u[3], V w[3]) {
     const __m512d sign = _mm512_setr_pd(-1, -1, -1, -1, 1, 1, 1, 1);
     __m512d r[8];
     for (int l = 0; l < 8; ++l)
@@ -146,8 +147,9 @@ struct Avx512Pack {
   }
 
   GRANRAD_INLINE std::int64_t find_close(const float* x, const float* y, const float* z, const float* reach,
-                                         const float p[4], const float period[3], const float inverse_period[3],
-                                         std::int32_t first, std::int32_t count, std::int32_t* out) {
+                                         const float p[4], const float period[3],
+                                         const float inverse_period[3], std::int32_t first,
+                                         std::int32_t count, std::int32_t* out) {
     std::int64_t found = 0;
     const float* c[3] = {x, y, z};
     const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);

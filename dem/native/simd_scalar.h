@@ -35,14 +35,15 @@ struct ScalarPack {
   GRANRAD_INLINE void prefetch(const void* p) { __builtin_prefetch(p); }
 
   /// d: difference of the positions and sum of the reaches.
-  GRANRAD_INLINE void pair_positions(const double* rows, const std::int32_t* i, const std::int32_t* j, V d[4]) {
+  GRANRAD_INLINE void pair_positions(const double* rows, const std::int32_t* i, const std::int32_t* j,
+                                     V d[4]) {
     const double *a = rows + 4 * std::int64_t(*i), *b = rows + 4 * std::int64_t(*j);
     for (int k = 0; k < 3; ++k) d[k] = a[k] - b[k];
     d[3] = a[3] + b[3];
   }
   /// u: difference of the velocities, w: sum of the spins.
-  GRANRAD_INLINE void pair_velocities(const double* rows, const std::int32_t* i, const std::int32_t* j, V u[3],
-                                      V w[3]) {
+  GRANRAD_INLINE void pair_velocities(const double* rows, const std::int32_t* i, const std::int32_t* j,
+                                      V u[3], V w[3]) {
     const double *a = rows + 8 * std::int64_t(*i), *b = rows + 8 * std::int64_t(*j);
     for (int k = 0; k < 3; ++k) u[k] = a[k] - b[k], w[k] = a[k + 4] + b[k + 4];
   }
@@ -118,8 +119,9 @@ struct ScalarPack {
   /// Appends to out the numbers first + q of those q < count (from memory, in packs) that are closer than
   /// their cutoff to point p; returns how many. Reads and writes up to 16 entries beyond the end.
   GRANRAD_INLINE std::int64_t find_close(const float* x, const float* y, const float* z, const float* reach,
-                                         const float p[4], const float period[3], const float inverse_period[3],
-                                         std::int32_t first, std::int32_t count, std::int32_t* out) {
+                                         const float p[4], const float period[3],
+                                         const float inverse_period[3], std::int32_t first,
+                                         std::int32_t count, std::int32_t* out) {
     std::int64_t found = 0;
     for (std::int32_t q = 0; q < count; ++q) {
       float d[3] = {p[0] - x[q], p[1] - y[q], p[2] - z[q]};

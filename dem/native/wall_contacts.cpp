@@ -15,7 +15,8 @@ constexpr double same_point = 1e-4;
 /// Adjacent faces bent by less than one degree are one smooth wall.
 constexpr double smooth_bend = 0.99985;
 
-/// Of two touches that report the same wall, the one of lower rank (face, edge, vertex), then the deeper, stays.
+/// Of two touches that report the same wall, the one of lower rank (face, edge, vertex), then the deeper,
+/// stays.
 bool repeats(const WallSurface& surface, const Touch& t, const Touch& kept, double tolerance) {
   if (t.feature == kept.feature || norm(t.point - kept.point) < tolerance) return true;
   if (kept.rank == 0 && t.rank > 0) return std::abs(dot(t.point - kept.point, kept.normal)) < tolerance;
@@ -24,7 +25,8 @@ bool repeats(const WallSurface& surface, const Touch& t, const Touch& kept, doub
 }
 
 /// Whether facet f is closer than reach to p or, where p is near a periodic border, to its image across it.
-bool is_close(const WallSurface& surface, const Periods& periods, std::int32_t f, const Vec3& p, double reach) {
+bool is_close(const WallSurface& surface, const Periods& periods, std::int32_t f, const Vec3& p,
+              double reach) {
   if (std::abs(surface.height(f, p)) < reach && surface.distance(f, p) < reach) return true;
   if (!periods.any) return false;
   Vec3 low, high;
@@ -38,13 +40,14 @@ bool is_close(const WallSurface& surface, const Periods& periods, std::int32_t f
     for (const double y : {low.y, 0.0, high.y})
       for (const double z : {low.z, 0.0, high.z}) {
         const Vec3 image = p + Vec3{x, y, z};
-        if (!(image == p) && std::abs(surface.height(f, image)) < reach && surface.distance(f, image) < reach) return true;
+        if (!(image == p) && std::abs(surface.height(f, image)) < reach && surface.distance(f, image) < reach)
+          return true;
       }
   return false;
 }
 
-std::vector<Touch> distinct_touches(const WallSurface& surface, const std::int32_t* begin, const std::int32_t* end,
-                                    const Vec3& p, double radius) {
+std::vector<Touch> distinct_touches(const WallSurface& surface, const std::int32_t* begin,
+                                    const std::int32_t* end, const Vec3& p, double radius) {
   std::vector<Touch> all, kept;
   for (auto f = begin; f != end; ++f) surface.touches(*f, p, radius, all);
   if (all.empty()) {  // rounding may leave a crack between features: the nearest side closes it
@@ -64,8 +67,9 @@ std::vector<Touch> distinct_touches(const WallSurface& surface, const std::int32
 
 }  // namespace
 
-void WallContacts::find_near(const WallSurface& surface, const Grid& grid, const Rows& rows, const Periods& periods,
-                             Range range, double skin_m, const Vec3& drift, double slack_m) {
+void WallContacts::find_near(const WallSurface& surface, const Grid& grid, const Rows& rows,
+                             const Periods& periods, Range range, double skin_m, const Vec3& drift,
+                             double slack_m) {
   near_.clear();
   double largest = 0;
   for (auto i = range.begin; i < range.end; ++i) largest = std::max(largest, rows.radius[i]);
@@ -78,8 +82,7 @@ void WallContacts::find_near(const WallSurface& surface, const Grid& grid, const
       for (auto i = std::max(begin, range.begin); i < std::min(end, range.end); ++i) {
         const Vec3 p = periods.wrapped(rows.position_of(i));
         const double reach = rows.radius[i] + skin_m;
-        if (is_close(surface, periods, f, p, reach))
-          near_.push_back({static_cast<std::int32_t>(i), f});
+        if (is_close(surface, periods, f, p, reach)) near_.push_back({static_cast<std::int32_t>(i), f});
       }
     });
   }
@@ -87,8 +90,8 @@ void WallContacts::find_near(const WallSurface& surface, const Grid& grid, const
             [](const Near& a, const Near& b) { return a.row != b.row ? a.row < b.row : a.facet < b.facet; });
 }
 
-bool WallContacts::acts_as_planes(const WallSurface& surface, const Periods& periods, const Vec3& p, double margin_m,
-                                  const std::vector<std::int32_t>& facets) const {
+bool WallContacts::acts_as_planes(const WallSurface& surface, const Periods& periods, const Vec3& p,
+                                  double margin_m, const std::vector<std::int32_t>& facets) const {
   for (const auto f : facets) {
     for (int a = 0; a < 3; ++a)  // planes know no images
       if (periods.length[a] > 0 && surface.plane_rows()[8 * f + 4 + a] != 0) return false;
@@ -105,14 +108,15 @@ void WallContacts::add_plane(std::int32_t row, std::int32_t facet, std::int64_t 
                              std::vector<WallMemory>& kept) {
   rows_.push_back(row), facets_.push_back(facet), features_.push_back(feature);
   Vec3 s;
-  const auto at = std::lower_bound(kept.begin(), kept.end(), row, [](const WallMemory& m, auto r) { return m.row < r; });
+  const auto at =
+      std::lower_bound(kept.begin(), kept.end(), row, [](const WallMemory& m, auto r) { return m.row < r; });
   for (auto m = at; m != kept.end() && m->row == row; ++m)
     if (m->feature == feature) s = m->displacement;
   for (int a = 0; a < 3; ++a) displacement_[a].push_back(s[a]);
 }
 
-void WallContacts::finish_planes(const Rows& rows, const std::vector<Material>& materials, std::int32_t idle_row,
-                                 std::int32_t idle_plane) {
+void WallContacts::finish_planes(const Rows& rows, const std::vector<Material>& materials,
+                                 std::int32_t idle_row, std::int32_t idle_plane) {
   plane_count_ = static_cast<std::int64_t>(rows_.size());
   while (rows_.size() % 8) {
     rows_.push_back(idle_row), facets_.push_back(idle_plane), features_.push_back(-1);
@@ -125,8 +129,9 @@ void WallContacts::finish_planes(const Rows& rows, const std::vector<Material>& 
   for (std::int64_t k = 0; k < plane_count_; ++k) {
     const auto i = rows_[k];
     const auto c = wall_coefficients({&materials[rows.material[i]], rows.radius[i], rows.mass[i]});
-    const double columns[varied_columns] = {c.effective_radius, c.normal, c.tangential, c.normal_damping,
-                                            c.tangential_damping, c.friction, c.rolling, rows.radius[i], rows.radius[i]};
+    const double columns[varied_columns] = {c.effective_radius,   c.normal,   c.tangential, c.normal_damping,
+                                            c.tangential_damping, c.friction, c.rolling,    rows.radius[i],
+                                            rows.radius[i]};
     for (int n = 0; n < varied_columns; ++n) varied_[n * padded + k] = columns[n];
   }
 }
@@ -163,22 +168,28 @@ void WallContacts::refresh(const WallSurface& surface, const Rows& rows, const P
 }
 
 double WallContacts::add_forces(const Kernels& kernels, const WallSurface& surface, Rows& rows,
-                                const Periods& periods, const StepConstants& constants, const std::vector<Material>& materials) {
+                                const Periods& periods, const StepConstants& constants,
+                                const std::vector<Material>& materials) {
   double deepest = -1;
   if (plane_count_ > 0) {
     const auto padded = static_cast<std::int64_t>(rows_.size());
-    const ContactView view{rows_.data(), facets_.data(), padded,
+    const ContactView view{rows_.data(),
+                           facets_.data(),
+                           padded,
                            {displacement_[0].data(), displacement_[1].data(), displacement_[2].data()},
-                           rows.uniform ? nullptr : varied_.data(), padded};
-    deepest = kernels.plane_contacts(rows.view(), view, {surface.plane_rows(), surface.velocity_rows()}, constants);
+                           rows.uniform ? nullptr : varied_.data(),
+                           padded};
+    deepest =
+        kernels.plane_contacts(rows.view(), view, {surface.plane_rows(), surface.velocity_rows()}, constants);
   }
-  for (auto& border : borders_) deepest = std::max(deepest, border_forces(surface, rows, periods, constants, materials, border));
+  for (auto& border : borders_)
+    deepest = std::max(deepest, border_forces(surface, rows, periods, constants, materials, border));
   return deepest;
 }
 
 double WallContacts::border_forces(const WallSurface& surface, Rows& rows, const Periods& periods,
-                                   const StepConstants& constants,
-                                   const std::vector<Material>& materials, Border& border) {
+                                   const StepConstants& constants, const std::vector<Material>& materials,
+                                   Border& border) {
   const auto i = border.row;
   const Vec3 p = periods.wrapped(rows.position_of(i)), v = rows.velocity_of(i), w = rows.spin_of(i);
   const double radius = rows.radius[i];
@@ -188,8 +199,8 @@ double WallContacts::border_forces(const WallSurface& surface, Rows& rows, const
     border.springs.clear();
     return -1;
   }
-  const auto law = rows.uniform ? constants.wall
-                                : wall_coefficients({&materials[rows.material[i]], radius, rows.mass[i]});
+  const auto law =
+      rows.uniform ? constants.wall : wall_coefficients({&materials[rows.material[i]], radius, rows.mass[i]});
   std::vector<Spring> old = std::move(border.springs);
   border.springs.clear();
   // A spring stays with its feature; what rolled from one feature to the next takes its spring along.
@@ -210,7 +221,8 @@ double WallContacts::border_forces(const WallSurface& surface, Rows& rows, const
   }
   for (std::size_t k = 0; k < touches.size(); ++k)
     if (is_new[k])
-      next[k].displacement = take([&](const Spring& s) { return surface.adjacent(s.feature, touches[k].feature); });
+      next[k].displacement =
+          take([&](const Spring& s) { return surface.adjacent(s.feature, touches[k].feature); });
 
   double deepest = -1;
   for (std::size_t k = 0; k < touches.size(); ++k) {

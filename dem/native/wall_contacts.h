@@ -29,8 +29,8 @@ class WallContacts {
   };
   /// Facets within `skin_m` of the rows' surfaces. `drift` is how far the rows' mean moved since the grid was
   /// sorted, `slack_m` how far a row may have moved beside it.
-  void find_near(const WallSurface& surface, const Grid& grid, const Rows& rows, const Periods& periods, Range range,
-                 double skin_m, const Vec3& drift, double slack_m);
+  void find_near(const WallSurface& surface, const Grid& grid, const Rows& rows, const Periods& periods,
+                 Range range, double skin_m, const Vec3& drift, double slack_m);
   /// Chooses those that can touch before the next refresh; `extra_m` is what the mean flow adds to the reach.
   void refresh(const WallSurface& surface, const Rows& rows, const Periods& periods,
                const std::vector<Material>& materials, double extra_m, std::int32_t idle_row);
@@ -62,8 +62,9 @@ class WallContacts {
   void add_plane(std::int32_t row, std::int32_t facet, std::int64_t feature, std::vector<WallMemory>& kept);
   void finish_planes(const Rows& rows, const std::vector<Material>& materials, std::int32_t idle_row,
                      std::int32_t idle_plane);
-  double border_forces(const WallSurface& surface, Rows& rows, const Periods& periods, const StepConstants& constants,
-                       const std::vector<Material>& materials, Border& border);
+  double border_forces(const WallSurface& surface, Rows& rows, const Periods& periods,
+                       const StepConstants& constants, const std::vector<Material>& materials,
+                       Border& border);
 
   std::vector<Near> near_;
   std::vector<Border> borders_;

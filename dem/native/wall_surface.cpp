@@ -114,7 +114,8 @@ void WallSurface::group_coplanar(const std::vector<Wall>& walls) {
         const auto& around = edges_[side.edge].facets;
         if (around.size() != 2 || side.smooth) continue;
         const auto other = around[0] == at ? around[1] : around[0];
-        if (other == at || !alike(facets_[n], facets_[other]) || !coplanar(facets_[n], facets_[other])) continue;
+        if (other == at || !alike(facets_[n], facets_[other]) || !coplanar(facets_[n], facets_[other]))
+          continue;
         Side& opposite = side_of(other, side.edge);
         if (dot(side.inward, opposite.inward) > 0) continue;
         if (facets_[other].group != n && facets_[other].group != other) continue;
@@ -212,7 +213,8 @@ bool WallSurface::edge_is_minimum(std::int32_t number, const Vec3& p) const {
 bool WallSurface::vertex_is_minimum(std::int32_t vertex, const Vec3& p) const {
   for (const auto n : edges_of_vertex_[vertex]) {
     const Edge& e = edges_[n];
-    const bool stands = std::any_of(e.facets.begin(), e.facets.end(), [&](auto f) { return facets_[f].stands; });
+    const bool stands =
+        std::any_of(e.facets.begin(), e.facets.end(), [&](auto f) { return facets_[f].stands; });
     if (!stands) continue;
     const double t = e.along(p);
     if (e.ends[0] == vertex ? t > 0 : t < e.length) return false;
@@ -233,7 +235,8 @@ void WallSurface::touches(std::int32_t f, const Vec3& p, double reach_m, std::ve
   const auto corner = [&](std::int64_t feature, int rank, const Vec3& point) {
     const Vec3 away = p - point;
     const double distance = norm(away);
-    if (distance < reach_m && distance > 0) out.push_back({feature, f, rank, point, away * (1 / distance), distance});
+    if (distance < reach_m && distance > 0)
+      out.push_back({feature, f, rank, point, away * (1 / distance), distance});
   };
   for (std::size_t k = 0; k < facet.sides.size(); ++k) {
     const Side& side = facet.sides[k];
@@ -270,7 +273,8 @@ bool WallSurface::vertex_in_group(std::int32_t vertex, std::int32_t group) const
 
 bool WallSurface::adjacent(std::int64_t a, std::int64_t b) const {
   if (a > b) std::swap(a, b);
-  const std::int64_t first_edge = facet_count(), first_vertex = first_edge + static_cast<std::int64_t>(edges_.size());
+  const std::int64_t first_edge = facet_count(),
+                     first_vertex = first_edge + static_cast<std::int64_t>(edges_.size());
   const auto edge_in_group = [&](const Edge& e, std::int64_t group) {
     return std::any_of(e.facets.begin(), e.facets.end(), [&](auto f) { return facets_[f].group == group; });
   };

@@ -60,7 +60,8 @@ class WallSurface {
   /// Whether two features meet (a group and its edge, an edge and its end), or are groups that share an edge.
   bool adjacent(std::int64_t a, std::int64_t b) const;
 
-  /// Planes by facet, as the kernels read them (rows of the facet's group); one more that nobody touches pads lists.
+  /// Planes by facet, as the kernels read them (rows of the facet's group); one more that nobody touches pads
+  /// lists.
   const double* plane_rows() const { return plane_rows_.data(); }
   const double* velocity_rows() const { return velocity_rows_.data(); }
   Vec3 velocity(std::int32_t f) const {
@@ -88,7 +89,9 @@ class WallSurface {
     std::vector<std::int32_t> facets;
     double along(const Vec3& p) const { return dot(p - start, direction); }
   };
-  double inside_by(const Side& side, const Vec3& p) const { return dot(p - edges_[side.edge].start, side.inward); }
+  double inside_by(const Side& side, const Vec3& p) const {
+    return dot(p - edges_[side.edge].start, side.inward);
+  }
   Side& side_of(std::int32_t facet, std::int32_t edge);
   const Side& side_of(std::int32_t facet, std::int32_t edge) const;
   void add_facet(std::int32_t wall, const std::vector<Vec3>& corners);

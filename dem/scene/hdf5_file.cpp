@@ -56,6 +56,13 @@ Handle text_type() {
   return type;
 }
 
+/// Creation properties of an object that stores no time of its making: equal content is equal bytes.
+Handle without_clock(hid_t kind) {
+  Handle list(H5Pcreate(kind), H5Pclose);
+  H5Pset_obj_track_times(list, false);
+  return list;
+}
+
 Handle intermediate_groups() {
   Handle list(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(list, 1);
@@ -114,7 +121,7 @@ void Hdf5Writer::write(const std::string& name, const T* values, std::size_t row
   const hsize_t shape[2] = {rows, columns}, chunk[2] = {std::min<hsize_t>(rows, chunk_rows), columns};
   const int rank = columns > 1 ? 2 : 1;
   const Handle space(H5Screate_simple(rank, shape, nullptr), H5Sclose);
-  const Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose), links = intermediate_groups();
+  const Handle layout = without_clock(H5P_DATASET_CREATE), links = intermediate_groups();
   if (rows > 0) {
     H5Pset_chunk(layout, rank, chunk);
     if (std::is_integral_v<T>) {
@@ -139,8 +146,8 @@ void Hdf5Writer::write(const std::string& name, const std::vector<std::string>& 
   const hsize_t rows = texts.size();
   const Handle space(H5Screate_simple(1, &rows, nullptr), H5Sclose), type = text_type(),
                                                                      links = intermediate_groups();
-  const Handle set(H5Dcreate2(impl_->file, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT),
-                   H5Dclose);
+  const Handle layout = without_clock(H5P_DATASET_CREATE);
+  const Handle set(H5Dcreate2(impl_->file, name.c_str(), type, space, links, layout, H5P_DEFAULT), H5Dclose);
   impl_->require(set.valid(), name);
   std::vector<const char*> pointers;
   for (const auto& text : texts) pointers.push_back(text.c_str());
@@ -149,7 +156,8 @@ void Hdf5Writer::write(const std::string& name, const std::vector<std::string>& 
 }
 
 void Hdf5Writer::group(const std::string& name) {
-  const Handle made(H5Gcreate2(impl_->file, name.c_str(), intermediate_groups(), H5P_DEFAULT, H5P_DEFAULT),
+  const Handle made(H5Gcreate2(impl_->file, name.c_str(), intermediate_groups(),
+                               without_clock(H5P_GROUP_CREATE), H5P_DEFAULT),
                     H5Gclose);
   impl_->require(made.valid(), name);
 }

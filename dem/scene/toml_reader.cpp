@@ -12,6 +12,8 @@
 #include <sstream>
 
 #include "dem/scene/error.h"
+#include "dem/scene/number_rule.h"
+#include "dem/scene/problem_list.h"
 #include "dem/scene/suggestion.h"
 #include "dem/scene/units.h"
 
@@ -47,51 +49,8 @@ std::string quoted_list(const std::vector<std::string>& words) {
   return words.empty() ? "" : fmt::format("\"{}\"", fmt::join(words, "\", \""));
 }
 
-bool inside(const NumberRule& rule, double value) {
-  return (rule.min_exclusive ? value > rule.min : value >= rule.min) &&
-         (rule.max_exclusive ? value < rule.max : value <= rule.max);
-}
-
-/// "in (0, 1]", "> 0 m"; "" when nothing is asked.
-std::string bounds_text(const NumberRule& rule) {
-  const bool low = std::isfinite(rule.min), high = std::isfinite(rule.max);
-  const std::string unit = std::string_view(rule.unit) == "1" ? "" : fmt::format(" {}", rule.unit);
-  if (low && high)
-    return fmt::format("in {}{}, {}{}{}", rule.min_exclusive ? '(' : '[', rule.min, rule.max,
-                       rule.max_exclusive ? ')' : ']', unit);
-  if (low) return fmt::format("{} {}{}", rule.min_exclusive ? ">" : ">=", rule.min, unit);
-  if (high) return fmt::format("{} {}{}", rule.max_exclusive ? "<" : "<=", rule.max, unit);
-  return "";
-}
-
-/// Any value the rule allows, for the reader to go on with after a problem.
-double placeholder(const NumberRule& rule) {
-  const bool low = std::isfinite(rule.min), high = std::isfinite(rule.max);
-  if (low && high) return 0.5 * (rule.min + rule.max);
-  return low ? rule.min + 1 : high ? rule.max - 1 : 1;
-}
-
-std::string expected_number(const NumberRule& rule) {
-  const std::string bounds = bounds_text(rule);
-  if (!bounds.empty()) return fmt::format("a number {}", bounds);
-  return std::string_view(rule.unit) == "1" ? "a number" : fmt::format("a number in {}", rule.unit);
-}
-
-/// Where something stands; line 0: no place inside the file.
-struct Place {
-  std::string file;
-  std::uint32_t line = 0, column = 0;
-};
-
 Place place_of(const toml::source_region& source, const std::string& fallback_file) {
   return {source.path ? *source.path : fallback_file, source.begin.line, source.begin.column};
-}
-
-constexpr std::string_view override_mark = "--set ";
-
-std::string location(const Place& place) {
-  if (place.line == 0 || place.file.starts_with(override_mark)) return place.file + ": ";
-  return fmt::format("{}:{}:{}: ", place.file, place.line, place.column);
 }
 
 toml::table parse_toml(std::string_view text, const std::string& name) {
@@ -119,20 +78,16 @@ void merge(toml::table& into, toml::table&& from) {
 }  // namespace
 
 struct TomlDocument::State {
-  struct Problem {
-    Place place;
-    std::string text;
-  };
   std::string name;
   fs::path folder;
   toml::table root;
-  std::vector<Problem> problems;
+  ProblemList problems;
   std::map<std::string, std::set<std::string>> known, read;      ///< keys asked for, by table path
   std::map<std::string, std::vector<std::string>> absent_needs;  ///< keys required of tables that are absent
   std::set<std::string> troubled;                                ///< paths that have a problem of their own
 
   void add(const Place& place, const std::string& path, std::string text) {
-    problems.push_back({place, std::move(text)});
+    problems.add(place, std::move(text));
     troubled.insert(path);
   }
   void add_at(const toml::node& node, const std::string& path, const std::string& why) {
@@ -357,18 +312,7 @@ void TomlDocument::State::report_absent_tables() {
 void TomlDocument::finish() {
   state_->report_unread(state_->root, "");
   state_->report_absent_tables();
-  auto& problems = state_->problems;
-  const auto rank = [&](const State::Problem& p) {
-    const int group = p.place.file == state_->name ? 0 : p.place.file.starts_with(override_mark) ? 2 : 1;
-    return std::tuple(group, p.place.file, p.place.line, p.place.column);
-  };
-  std::stable_sort(problems.begin(), problems.end(),
-                   [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
-  std::vector<std::string> lines;
-  for (const auto& p : problems) {
-    std::string line = location(p.place) + p.text;
-    if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(std::move(line));
-  }
+  std::vector<std::string> lines = state_->problems.lines(state_->name);
   if (!lines.empty()) throw InputError(std::move(lines));
 }
 

@@ -1,26 +1,16 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "dem/scene/number_rule.h"
 #include "dem/scene/vec3.h"
 
 namespace granrad {
-
-/// What a number must be. `unit` is the SI unit of plain numbers ("m", "kg/s", "1"); a string value such as
-/// "0.8 mm" or "1.59 g/s" is converted to it with UDUNITS, and a value of another dimension is a problem.
-struct NumberRule {
-  const char* unit = "1";
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
-  bool min_exclusive = false, max_exclusive = false;
-  const char* why = "";  ///< reason printed with a violated bound, e.g. "grey diffuse surface"
-};
 
 class TomlTable;
 

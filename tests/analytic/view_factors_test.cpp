@@ -31,9 +31,9 @@ struct TwoSpheres {
 
 class TwoSphereFactor : public testing::TestWithParam<TwoSpheres> {};
 
-// Planted errors: emission uniform over the hemisphere instead of cosine is blind here beyond contact
-// (style.md), see z in the comments of SphereInBox; a self-hit (source not excluded) leaves too few open
-// rays.
+// Planted errors, z found: emission uniform over the hemisphere instead of cosine 17 at contact (2 diameters
+// apart and in SphereInBox: blind, < 4; EmptyBox: 31 to 527); the source sphere not excluded 141
+// (SphereInBox: up to 442).
 TEST_P(TwoSphereFactor, EqualsQuadrature) {
   const auto [r1, r2, gap] = GetParam();
   const double s = (r1 + r2) + gap * 2 * r1;
@@ -54,7 +54,8 @@ INSTANTIATE_TEST_SUITE_P(ContactToTenDiameters, TwoSphereFactor,
                                          TwoSpheres{r, 0.2 * r, 9}));
 
 // chi^2 of 200 seeds, both directions, around the exact value, in units of the sigma that one_way_estimate
-// states. Its own scatter is sqrt(2 / 400) = 0.07. sqrt(n) instead of n in the variance is off by factors,
+// states. Its own scatter is sqrt(2 / 400) = 0.07.
+// Planted: half the variance gives 1.8 to 2.2.
 // not by 20 %.
 TEST(TwoSphereFactor, StatedSigmaIsRight) {
   const Enclosure e = spheres_in_open_space({{0, 0, 0}, {3 * r, 0, 0}}, {r, r});

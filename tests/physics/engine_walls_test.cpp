@@ -1,5 +1,5 @@
-// Requirement: a wall is felt once, however it is cut into polygons and triangles, at faces, edges and corners,
-// moving or opening.
+// Requirement: a wall is felt once, however it is cut into polygons and triangles, at faces, edges and
+// corners, moving or opening.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,8 @@ constexpr double radius = 4e-4, step = 1e-5, g = 9.81;
 
 Bed empty_bed() {
   Material m;
-  m.density_kg_m3 = 3984, m.youngs_modulus_Pa = 5e6, m.poisson_ratio = 0.23, m.restitution = 0.45, m.friction = 0.4;
+  m.density_kg_m3 = 3984, m.youngs_modulus_Pa = 5e6, m.poisson_ratio = 0.23, m.restitution = 0.45,
+  m.friction = 0.4;
   Bed bed;
   bed.materials = {m};
   return bed;
@@ -26,7 +27,8 @@ Wall square(double half, double z) {
   return w;
 }
 
-/// A floor of n x n squares of two triangles each, cut along alternating diagonals; `welded`: triangles share vertices.
+/// A floor of n x n squares of two triangles each, cut along alternating diagonals; `welded`: triangles share
+/// vertices.
 Wall mesh_floor(double half, int n, bool welded) {
   Wall w;
   const double side = 2 * half / n;
@@ -48,7 +50,8 @@ Wall mesh_floor(double half, int n, bool welded) {
     w.vertices.clear(), w.triangles.clear();
     for (std::size_t k = 0; k < old.triangles.size(); ++k) {
       const auto first = static_cast<std::int32_t>(w.vertices.size());
-      for (const auto v : old.triangles[k]) w.vertices.push_back(old.vertices[v] + Vec3{1e-13 * double(k), 0, 0});
+      for (const auto v : old.triangles[k])
+        w.vertices.push_back(old.vertices[v] + Vec3{1e-13 * double(k), 0, 0});
       w.triangles.push_back({first, first + 1, first + 2});
     }
   }
@@ -108,10 +111,12 @@ TEST(EngineWalls, edge_and_apex_push_once) {
     Bed bed = empty_bed();
     Wall w;
     if (apex) {
-      w.vertices = {{-2e-3, -2e-3, -2e-3}, {2e-3, -2e-3, -2e-3}, {2e-3, 2e-3, -2e-3}, {-2e-3, 2e-3, -2e-3}, {0, 0, 0}};
+      w.vertices = {
+          {-2e-3, -2e-3, -2e-3}, {2e-3, -2e-3, -2e-3}, {2e-3, 2e-3, -2e-3}, {-2e-3, 2e-3, -2e-3}, {0, 0, 0}};
       w.triangles = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
     } else {
-      w.vertices = {{-5e-3, -2e-3, -2e-3}, {5e-3, -2e-3, -2e-3}, {5e-3, 0, 0}, {-5e-3, 0, 0}, {5e-3, 2e-3, -2e-3}, {-5e-3, 2e-3, -2e-3}};
+      w.vertices = {{-5e-3, -2e-3, -2e-3}, {5e-3, -2e-3, -2e-3}, {5e-3, 0, 0},
+                    {-5e-3, 0, 0},         {5e-3, 2e-3, -2e-3},  {-5e-3, 2e-3, -2e-3}};
       w.triangles = {{0, 1, 2}, {0, 2, 3}, {3, 2, 4}, {3, 4, 5}};
     }
     bed.walls = {w};

@@ -232,7 +232,7 @@ Wall hopper_mesh() {
   return mesh;
 }
 
-// Planted: edges tested without widening leak about 3e-8 of random rays and a third of those aimed at
+// Planted: edges tested without widening lose 1046 of the 336000 aimed rays (and none of 3e6 random ones).
 // vertices.
 TEST(HopperMesh, NothingLeaks) {
   Enclosure e;
@@ -331,7 +331,7 @@ TEST(Periodic, NeighboursAcrossTheBoundary) {
   EXPECT_EQ(counts.leaked, 0);
 }
 
-// Planted: images of the spheres at the boundary left out gives chi^2 = CHI and a mean chord of CHORD.
+// Planted: images of the spheres at the boundary left out gives chi^2 = 6.9 and a mean chord of 1.12.
 TEST(Periodic, BedObeysItsIdentities) {
   const double length = 8 * r;
   Enclosure e = spheres_in_open_space(separate_spheres(length, 30, r), std::vector<double>(30, r));

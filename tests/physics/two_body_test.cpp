@@ -1,8 +1,8 @@
 // Requirement: two spheres, and a sphere and a wall, collide as in LIGGGHTS to the digits both can hold.
 //
-// Planted errors each of these sees: arm R instead of R - delta/2, friction limit without damping, history not
-// projected (oblique cases); tangential stiffness of another day's overlap (oblique, slide); e in place of ln e
-// (head-on).
+// Planted errors each of these sees: arm R instead of R - delta/2, friction limit without damping, history
+// not projected (oblique cases); tangential stiffness of another day's overlap (oblique, slide); e in place
+// of ln e (head-on).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -56,17 +56,21 @@ std::vector<double> last_row(const std::string& file, double id) {
 
 /// LIGGGHTS evaluates forces at whole steps, we at half steps: a free particle shifted by half a step's way
 /// meets the same forces.
-Vec3 shifted(const Vec3& x, const Vec3& v, double step) { return x + v * (0.5 * step); }
+Vec3 shifted(const Vec3& x, const Vec3& v, double step) {
+  return x + v * (0.5 * step);
+}
 
 TEST(TwoBody, head_on_matches_liggghts) {
-  for (const auto& [speed, file] : {std::pair{0.05, "headon_v0.05_dt1e-7.csv"}, std::pair{0.2, "headon_v0.2_dt1e-7.csv"}}) {
+  for (const auto& [speed, file] :
+       {std::pair{0.05, "headon_v0.05_dt1e-7.csv"}, std::pair{0.2, "headon_v0.2_dt1e-7.csv"}}) {
     const double step = 1e-7;
     Bed bed = empty_bed();
     bed.add(shifted({-4.1e-4, 0, 0}, {speed, 0, 0}, step), {speed, 0, 0}, radius, 300);
     bed.add(shifted({4.1e-4, 0, 0}, {-speed, 0, 0}, step), {-speed, 0, 0}, radius, 300);
     make_native_engine(bed, {}, step)->advance(bed, 8e-4);
     const auto want = last_row(file, 2);
-    // At 0.05 m/s the spheres touch at a whole step, 2000: rounding decides whether the step counts, worth 2e-6.
+    // At 0.05 m/s the spheres touch at a whole step, 2000: rounding decides whether the step counts, worth
+    // 2e-6.
     EXPECT_NEAR(bed.velocity_m_s[1].x / want[5], 1, speed == 0.05 ? 5e-6 : 1e-9) << file;
     EXPECT_NEAR(bed.velocity_m_s[1].x / speed, 0.45, 5e-4) << file;
     EXPECT_EQ(bed.velocity_m_s[0].x, -bed.velocity_m_s[1].x);

@@ -1,8 +1,8 @@
 // Requirement: the state after a run depends on the Bed alone, to the last bit: not on threads, on how often
 // lists are made anew, on being cut into pieces or restarted, nor on the instruction set.
 //
-// Planted errors this sees: floating-point sums of forces (order), springs lost or swapped in a rebuild, a pair
-// missing from a tight list, half steps merged into whole ones.
+// Planted errors this sees: floating-point sums of forces (order), springs lost or swapped in a rebuild, a
+// pair missing from a tight list, half steps merged into whole ones.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -33,7 +33,8 @@ Bed rain(bool varied) {
   bed.walls = {faces[0], faces[1], faces[4]};
   bed.walls[1].triangles = {{0, 1, 2}, {0, 2, 3}};
   Wall ridge;  // a roof in the middle: edges, corners
-  ridge.vertices = {{2e-3, -1, 0}, {4e-3, -1, 2e-3}, {6e-3, -1, 0}, {2e-3, 1, 0}, {4e-3, 1, 2e-3}, {6e-3, 1, 0}};
+  ridge.vertices = {{2e-3, -1, 0}, {4e-3, -1, 2e-3}, {6e-3, -1, 0},
+                    {2e-3, 1, 0},  {4e-3, 1, 2e-3},  {6e-3, 1, 0}};
   ridge.triangles = {{0, 1, 3}, {1, 4, 3}, {1, 2, 4}, {2, 5, 4}};
   bed.walls.push_back(ridge);
   for (int k = 0; k < 600; ++k) {
@@ -48,7 +49,8 @@ Bed rain(bool varied) {
 
 constexpr double step = 1e-5;
 
-Bed after(Bed bed, std::int64_t steps, const EngineOptions& options, std::int64_t piece = 0, bool new_engine = false) {
+Bed after(Bed bed, std::int64_t steps, const EngineOptions& options, std::int64_t piece = 0,
+          bool new_engine = false) {
   auto engine = std::make_unique<NativeEngine>(bed, Vec3{0, 0, -9.81}, step, options);
   if (piece == 0) piece = steps;
   for (std::int64_t k = 0; k < steps; k += piece) {
@@ -72,7 +74,8 @@ void expect_same(const Bed& a, const Bed& b) {
   EXPECT_EQ(a.time_s, b.time_s);
 }
 
-EngineOptions options_of(int threads, int refresh = 16, int rebuild = 0, const native::Kernels* kernels = nullptr) {
+EngineOptions options_of(int threads, int refresh = 16, int rebuild = 0,
+                         const native::Kernels* kernels = nullptr) {
   EngineOptions o;
   o.threads = threads, o.schedule = {refresh, rebuild}, o.kernels = kernels;
   return o;
@@ -100,7 +103,8 @@ TEST_P(EngineBits, do_not_depend_on_anything_but_the_bed) {
   SCOPED_TRACE("instruction set");
   expect_same(want, after(start, steps, options_of(1, 16, 0, &native::baseline_kernels())));
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) expect_same(want, after(start, steps, options_of(1, 16, 0, &native::avx2_kernels())));
+  if (__builtin_cpu_supports("avx2"))
+    expect_same(want, after(start, steps, options_of(1, 16, 0, &native::avx2_kernels())));
   if (__builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
     expect_same(want, after(start, steps, options_of(1, 16, 0, &native::avx512_kernels())));
 #endif

@@ -10,7 +10,7 @@
 
 #include "dem/scene/error.h"
 #include "dem/scene/random.h"
-#include "dem/wall_distance.h"
+#include "dem/scene/wall_distance.h"
 
 namespace granrad {
 namespace {

@@ -1,9 +1,8 @@
 // Requirement: the plug feed brings the asked solid fraction and mass flow from phi 0.02 to 0.48, filled or
 // empty at the start, never inserts an overlap, carries what found no room, and continues bit for bit from
 // its state. Particles fly straight here (no engine), with transverse velocities off where their drift would
-// matter. Planted errors seen to fail here: tape period of the channel height instead of exact phi, tape
-// position not carried, waiting spheres dropped, reshuffle moving the used end of the tape, tape not in the
-// saved state.
+// matter. Planted errors seen to fail here: a piece of tape lost at each update, newcomers not pushed clear,
+// part of the tape not in the saved state. Blind to: the tape shaken up to its used end (too rare a touch).
 #include <gtest/gtest.h>
 
 #include "dem/feed.h"
@@ -119,17 +118,26 @@ TEST(PlugFeed, EmptyStartFillsInOneResidenceTime) {
   EXPECT_EQ(feed.totals().removed, 0);
 }
 
-TEST(PlugFeed, VelocitiesAreThoseAsked) {
-  const Scene scene = plug_scene(0.43);
+TEST(PlugFeed, VelocitiesOfNewcomersAreThoseAsked) {
+  Scene scene = plug_scene(0.43);
+  scene.materials[0].friction = 0;
+  scene.feed.start_filled = false;
   Feed feed(scene);
   Bed bed = empty_bed(scene);
   feed.start(bed);
   double mean = 0, square = 0;
-  for (const Vec3& v : bed.velocity_m_s) {
-    EXPECT_DOUBLE_EQ(v.z, -1.59e-3 / (3984 * 0.43 * 4e-5));
-    mean += v.x + v.y, square += v.x * v.x + v.y * v.y;
+  while (bed.time_s < 1) {
+    fly(bed, update_s);
+    const auto first_new = bed.size();
+    feed.update(bed);
+    for (std::size_t i = first_new; i < bed.size(); ++i) {
+      const Vec3& v = bed.velocity_m_s[i];
+      EXPECT_DOUBLE_EQ(v.z, -1.59e-3 / (3984 * 0.43 * 4e-5));
+      mean += v.x + v.y, square += v.x * v.x + v.y * v.y;
+    }
   }
   const double n = 2.0 * bed.size();
+  ASSERT_GT(n, 2000);
   // Four standard errors of mean and variance of n normal deviates.
   EXPECT_NEAR(mean / n, 0, 4 * 1e-3 / std::sqrt(n));
   EXPECT_NEAR(square / n, 1e-6, 4 * 1e-6 * std::sqrt(2 / n));

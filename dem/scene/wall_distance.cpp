@@ -1,4 +1,4 @@
-#include "dem/wall_distance.h"
+#include "dem/scene/wall_distance.h"
 
 #include <algorithm>
 

@@ -1,0 +1,243 @@
+// Speed of the native engine beside Debian's LIGGGHTS and LAMMPS on the same beds: dem_bench FOLDER
+// [--quick]. Lines read `CASE ours VALUE UNIT PEER VALUE UNIT ratio R` (R > 1 in our favour); FOLDER gets
+// dem_bench.csv and dem_bench.svg.
+#include <fmt/format.h>
+#include <fmt/os.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string_view>
+#include <vector>
+
+#include "dem/native/native_engine.h"
+#include "dem/scene/random.h"
+#include "tests/bench/dem_bench_peers.h"
+
+namespace granrad::bench {
+namespace {
+
+constexpr double step = 1e-5, radius = 4e-4;
+constexpr int piece = 100;  ///< steps of one advance, as in a coupled run
+
+Material alumina() {
+  Material m;
+  m.density_kg_m3 = 3984, m.youngs_modulus_Pa = 5e6, m.poisson_ratio = 0.23, m.restitution = 0.45,
+  m.friction = 0.4;
+  return m;
+}
+
+Wall floor_at_zero() {
+  Wall w;
+  w.name = "floor";
+  w.vertices = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  return w;
+}
+
+/// The settled bed, periodic in x and y, repeated nx x ny times.
+Bed settled_bed(int nx, int ny) {
+  std::ifstream in(std::string(GRANRAD_SOURCE_DIR) + "/data/reference/liggghts_bench/bed12k.data");
+  std::string line;
+  while (std::getline(in, line) && line.rfind("Atoms", 0) != 0) {
+  }
+  std::vector<Vec3> points;
+  double id, type, diameter, density;
+  for (Vec3 p; in >> id >> type >> diameter >> density >> p.x >> p.y >> p.z;) points.push_back(p);
+  Bed bed;
+  bed.materials = {alumina()};
+  for (int a = 0; a < nx; ++a)
+    for (int b = 0; b < ny; ++b)
+      for (const auto& p : points) bed.add(p + Vec3{0.018 * a, 0.018 * b, 0}, {}, radius, 300);
+  bed.periodic = {true, true, false};
+  bed.box = {{0, 0, -2e-4}, {0.018 * nx, 0.018 * ny, 0.045}};
+  bed.walls = {floor_at_zero()};
+  return bed;
+}
+
+/// 12 500 spheres at solid fraction 0.07 in uniform motion, all directions periodic.
+Bed dilute_plug() {
+  Bed bed;
+  bed.materials = {alumina()};
+  bed.periodic = {true, true, true};
+  const double pitch = std::cbrt(2.680825731e-10 / 0.07);
+  const int nx = 25, ny = 20, nz = 25;
+  bed.box = {{0, 0, 0}, {nx * pitch, ny * pitch, nz * pitch}};
+  for (int k = 0; k < nx * ny * nz; ++k) {
+    const auto a = random_uniform2(1, 0, k), b = random_uniform2(1, 1, k), v = random_normal2(1, 2, k);
+    const double jitter = pitch - 2.05 * radius;
+    bed.add({(k % nx) * pitch + jitter * a[0], (k / nx % ny) * pitch + jitter * a[1],
+             (k / nx / ny) * pitch + jitter * b[0]},
+            {1e-3 * v[0], 1e-3 * v[1], -0.1425}, radius, 300);
+  }
+  return bed;
+}
+
+Wall frustum(const std::string& name, double x0, double y0, double z0, double x1, double y1, double z1) {
+  Wall w;
+  w.name = name;
+  for (const auto& [x, y, z] : {std::array{x0, y0, z0}, std::array{x1, y1, z1}})
+    for (const auto& [sx, sy] : {std::array{-1, -1}, std::array{1, -1}, std::array{1, 1}, std::array{-1, 1}})
+      w.vertices.push_back({1e-3 * sx * x, 1e-3 * sy * y, 1e-3 * z});
+  for (int k = 0; k < 4; ++k) {
+    const int l = (k + 1) % 4;
+    w.triangles.push_back({k, l, l + 4});
+    w.triangles.push_back({k, l + 4, k + 4});
+  }
+  return w;
+}
+
+/// The moving bed: hopper, channel and outlet of 4 x 4 mm as meshes, 10 376 particles in steady discharge.
+Bed moving_bed() {
+  Bed bed;
+  bed.materials = {alumina()};
+  std::ifstream in(std::string(GRANRAD_SOURCE_DIR) + "/data/reference/snapshot_outlet_4x4.dump");
+  std::string line;
+  while (std::getline(in, line) && line.rfind("ITEM: ATOMS", 0) != 0) {
+  }
+  double id, contacts;
+  for (Vec3 p, v, w; in >> id >> p.x >> p.y >> p.z >> v.x >> v.y >> v.z >> w.x >> w.y >> w.z >> contacts;)
+    bed.angular_velocity_rad_s[bed.add(p, v, radius, 300)] = w;
+  bed.box = {{-0.016, -0.013, -0.12}, {0.016, 0.013, 0.102}};
+  bed.walls = {frustum("chute", 15, 12, 70, 15, 12, 100), frustum("feed", 5, 2, 50, 15, 12, 70),
+               frustum("channel", 5, 2, 0, 5, 2, 50), frustum("lower", 2, 2, -10, 5, 2, 0)};
+  return bed;
+}
+
+struct Speed {
+  double million_steps = 0;  ///< particle-steps per second
+  double ns_per_contact = 0, bytes_per_particle = 0;
+};
+
+/// Best of several pieces of the run, load and store of the Bed included.
+Speed measure(Bed bed, const Vec3& gravity, int threads, int warm_up, int steps,
+              const native::Kernels* kernels = nullptr) {
+  native::EngineOptions options;
+  options.threads = threads, options.kernels = kernels;
+  native::NativeEngine engine(bed, gravity, step, options);
+  const auto n = double(bed.size());
+  engine.advance(bed, warm_up * step);
+  double best = 1e300;
+  constexpr int repeats = 5;
+  std::int64_t done = warm_up;
+  for (int r = 0; r < repeats; ++r) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::int64_t until = done + steps / repeats;
+    for (const auto before = done; done < until; (void)before) {
+      done = std::min<std::int64_t>(until, done + piece);
+      engine.advance(bed, double(done) * step);
+    }
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    best = std::min(best, took.count() / double(steps / repeats));
+  }
+  const auto counts = engine.counts();
+  return {n / best * 1e-6,
+          best * 1e9 / double(std::max<std::int64_t>(1, counts.touching + counts.wall_contacts)),
+          counts.bytes_per_particle};
+}
+
+struct Line {
+  std::string name;
+  double ours;
+  std::string unit, peer;
+  double theirs;
+};
+
+class Report {
+ public:
+  explicit Report(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  void side_by_side(const std::string& name, double ours, const std::string& peer,
+                    std::optional<double> theirs) {
+    if (theirs) add({name, ours, "Mpsteps/s", peer, *theirs});
+  }
+  void add(const Line& l) {
+    fmt::print("{} ours {:.3g} {} {} {:.3g} {} ratio {:.2f}\n", l.name, l.ours, l.unit, l.peer, l.theirs,
+               l.unit, l.ours / l.theirs);
+    std::fflush(stdout);
+    lines_.push_back(l);
+  }
+  void note(const std::string& text) { fmt::print("{}\n", text); }
+  void save() const {
+    auto csv = fmt::output_file((folder_ / "dem_bench.csv").string());
+    csv.print("case,ours,unit,peer,theirs,ratio\n");
+    for (const auto& l : lines_)
+      csv.print("{},{},{},{},{},{}\n", l.name, l.ours, l.unit, l.peer, l.theirs, l.ours / l.theirs);
+    auto svg = fmt::output_file((folder_ / "dem_bench.svg").string());
+    const double width = 900, left = 260, row = 34;
+    double most = 1;
+    for (const auto& l : lines_) most = std::max({most, l.ours, l.theirs});
+    svg.print(
+        "<svg xmlns='http://www.w3.org/2000/svg' width='{}' height='{}' font-family='sans-serif' "
+        "font-size='12'>\n"
+        "<rect width='100%' height='100%' fill='white'/>\n<text x='10' y='20'>million particle-steps per "
+        "second "
+        "(dark: granrad, light: peer)</text>\n",
+        width, 40 + row * double(lines_.size()));
+    double y = 34;
+    for (const auto& l : lines_) {
+      const double scale = (width - left - 120) / most;
+      svg.print(
+          "<text x='10' y='{}'>{} / {}</text>\n<rect x='{}' y='{}' width='{}' height='12' fill='#1f4e79'/>\n"
+          "<rect x='{}' y='{}' width='{}' height='12' fill='#9dc3e6'/>\n<text x='{}' y='{}'>{:.1f}x</text>\n",
+          y + 16, l.name, l.peer, left, y, l.ours * scale, left, y + 13, l.theirs * scale,
+          left + 8 + std::max(l.ours, l.theirs) * scale, y + 16, l.ours / l.theirs);
+      y += row;
+    }
+    svg.print("</svg>\n");
+  }
+
+ private:
+  std::filesystem::path folder_;
+  std::vector<Line> lines_;
+};
+
+int run(const std::filesystem::path& folder, bool quick) {
+  std::filesystem::create_directories(folder);
+  Report report(folder);
+  const Vec3 down{0, 0, -9.81};
+  const int scale = quick ? 1 : 4, warm_up = 300;
+  const auto compare = [&](const std::string& name, const Bed& bed, const Vec3& gravity, int steps,
+                           int peer_steps, bool lammps) {
+    const auto one = measure(bed, gravity, 1, warm_up, steps);
+    report.note(fmt::format("{}: {} particles, {:.1f} ns per contact, {:.0f} bytes per particle", name,
+                            bed.size(), one.ns_per_contact, one.bytes_per_particle));
+    report.side_by_side(name, one.million_steps, "liggghts",
+                        run_liggghts(folder, bed, gravity, warm_up, peer_steps));
+    if (lammps)
+      report.side_by_side(name, one.million_steps, "lammps", run_lammps(folder, bed, warm_up, peer_steps));
+    const auto two = measure(bed, gravity, 2, warm_up, steps);
+    report.add({name + "_two_threads", two.million_steps, "Mpsteps/s", "one_thread", one.million_steps});
+    return one.million_steps;
+  };
+  const Bed bed = settled_bed(1, 1);
+  const double best = compare("bed_12k", bed, down, 1000 * scale, 500 * scale, true);
+  report.add({"bed_12k", best, "Mpsteps/s", "baseline",
+              measure(bed, down, 1, warm_up, 500, &native::baseline_kernels()).million_steps});
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2")) {
+    const double avx2 = measure(bed, down, 1, warm_up, 500 * scale, &native::avx2_kernels()).million_steps;
+    report.side_by_side("bed_12k_avx2", avx2, "liggghts",
+                        run_liggghts(folder, bed, down, warm_up, 500 * scale));
+  }
+#endif
+  compare("moving_bed_meshes", moving_bed(), down, 1000 * scale, 500 * scale, false);
+  compare("plug_phi007", dilute_plug(), {}, 1000 * scale, 1000 * scale, false);
+  compare("bed_100k", settled_bed(4, 2), down, 200 * scale, 50 * scale, true);
+  if (!quick) {
+    const auto million = measure(settled_bed(10, 8), down, 1, 100, 200);
+    report.add({"bed_1M", million.million_steps, "Mpsteps/s", "goal", 25});
+  }
+  report.save();
+  return 0;
+}
+
+}  // namespace
+}  // namespace granrad::bench
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    fmt::print(stderr, "usage: dem_bench FOLDER [--quick]\n");
+    return 2;
+  }
+  return granrad::bench::run(argv[1], argc > 2 && std::string_view(argv[2]) == "--quick");
+}

@@ -1,0 +1,208 @@
+// What a user types at vfgen and sees: options, files, messages and exit codes.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "raytrace/exact.h"
+#include "raytrace/view_factor_file.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int code = -1;
+  std::string text;  ///< stdout and stderr
+};
+
+Outcome vfgen(const std::string& arguments) {
+  Outcome outcome;
+  std::FILE* pipe = popen((std::string(VFGEN) + " " + arguments + " 2>&1").c_str(), "r");
+  std::array<char, 4096> buffer;
+  while (const auto n = std::fread(buffer.data(), 1, buffer.size(), pipe))
+    outcome.text.append(buffer.data(), n);
+  const int status = pclose(pipe);
+  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return outcome;
+}
+
+class Vfgen : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(testing::TempDir()) / (std::string("granrad_vfgen_") + test->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return path(name);
+  }
+  std::string two_spheres() const {
+    return write("two.csv", "x,y,z,radius\n0.002,0.002,0.002,0.0004\n0.0032,0.002,0.002,0.0004\n");
+  }
+  fs::path folder_;
+};
+
+void expect_says(const Outcome& outcome, int code, const std::string& part) {
+  EXPECT_EQ(outcome.code, code) << outcome.text;
+  EXPECT_NE(outcome.text.find(part), std::string::npos) << "no '" << part << "' in\n" << outcome.text;
+}
+
+const std::string source_dir = GRANRAD_SOURCE_DIR;
+
+TEST_F(Vfgen, ExplainsItself) {
+  expect_says(vfgen("--help"), 0, "trace");
+  expect_says(vfgen("trace --help"), 0, "--box");
+  expect_says(vfgen("fit --help"), 0, "--form");
+  expect_says(vfgen("--version"), 0, "vfgen 0.1.0");
+}
+
+TEST_F(Vfgen, RefusesBadUsageWithCode2) {
+  const auto csv = two_spheres();
+  expect_says(vfgen(""), 2, "subcommand");
+  expect_says(vfgen("tracee x"), 2, "tracee");
+  expect_says(vfgen("trace " + csv), 2, "--output");
+  expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --method rays"), 2, "embree");
+  expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --rays 0"), 2, "--rays");
+  expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --rays 10 --error 0.1"), 2, "excludes");
+  expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --emissivity 1.4"), 2, "--emissivity");
+  expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --box 1,2"), 2, "X,Y,Z");
+  expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --box 1,2,x"), 2, "X,Y,Z");
+  expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --box 1,2,-3"), 2, "positive");
+  expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --radius -1"), 2, "--radius");
+  expect_says(vfgen("trace " + csv + " -o " + path("x.txt")), 2, ".h5");
+  expect_says(
+      vfgen("trace " + csv + " -o " + path("x.h5") + " --box 0.01,0.01,0.01 --method lines --emissivity 0.5"),
+      2, "embree");
+  expect_says(vfgen("fit " + csv + " -o " + path("t.toml") + " --form quartic"), 2, "cubic");
+  expect_says(vfgen("-q -v check x"), 2, "excludes");
+  EXPECT_FALSE(fs::exists(path("x.h5")));
+}
+
+TEST_F(Vfgen, SaysWhichFileIsMissingWithCode3) {
+  expect_says(vfgen("trace " + path("none.csv") + " -o " + path("x.h5")), 3, "none.csv");
+  expect_says(vfgen("fit " + path("none.h5") + " -o " + path("t.toml")), 3, "none.h5");
+  expect_says(vfgen("check " + path("none.toml")), 3, "none.toml");
+  expect_says(vfgen("generate " + path("none.toml") + " -o " + path("out")), 3, "none.toml");
+  expect_says(vfgen("trace " + two_spheres() + " -o /proc/none/x.h5"), 3, "/proc/none");
+}
+
+TEST_F(Vfgen, RefusesBadFilesWithCode2) {
+  expect_says(vfgen("trace " + write("nan.csv", "x,y,z,radius\n0,0,nan,0.1\n") + " -o " + path("x.h5")), 2,
+              "nan.csv:2");
+  expect_says(vfgen("trace " + write("no_radius.csv", "x,y,z\n0,0,0\n") + " -o " + path("x.h5")), 2,
+              "radius");
+  expect_says(vfgen("trace " + write("negative.csv", "x,y,z,radius\n0,0,0,-1\n") + " -o " + path("x.h5")), 2,
+              "negative.csv:2");
+  expect_says(vfgen("check " + write("bad.toml", "form = \"cubic\"\n")), 2, "bad.toml");
+  const auto config =
+      write("generate.toml",
+            "[snapshots]\nsolid_fractions = [0.9]\nsize_m = [1, 1, 1]\ndiameter_m = 0.9\ncolour = 1\n");
+  const auto outcome = vfgen("generate " + config + " -o " + path("out"));
+  expect_says(outcome, 2, "generate.toml:2");
+  expect_says(outcome, 2, "generate.toml:4");
+  expect_says(outcome, 2, "colour");
+}
+
+// 4 sigma of 1e5 rays from each of two spheres at d* = 1.5; a wrong emission law is caught by raytrace's own
+// tests.
+TEST_F(Vfgen, TracesTwoSpheresInABox) {
+  expect_says(
+      vfgen("trace " + two_spheres() + " -o " + path("two.h5") + " --rays 100000 --box 0.01,0.004,0.004"), 0,
+      "self-check passed");
+  const auto file = granrad::read_view_factors(path("two.h5"));
+  ASSERT_EQ(file.enclosure.sphere_count(), 2u);
+  ASSERT_EQ(file.enclosure.walls.size(), 6u);
+  EXPECT_EQ(file.enclosure.walls[5].name, "z_max");
+  const double exact = granrad::exact_two_sphere(0.0004, 0.0004, 0.0012);
+  const double found = file.closed.value[file.closed.pattern.row_begin[0]] / file.closed.area_m2[0];
+  EXPECT_EQ(file.closed.pattern.column[file.closed.pattern.row_begin[0]], 1);
+  EXPECT_NEAR(found, exact, 4 * std::sqrt(exact / 2e5));
+}
+
+TEST_F(Vfgen, NumbersTheFilesOfSeveralSnapshots) {
+  const auto csv = two_spheres();
+  EXPECT_EQ(vfgen("-q trace " + csv + " " + csv + " -o " + path("many.h5") + " --rays 100").code, 0);
+  EXPECT_TRUE(fs::exists(path("many_0001.h5")));
+  EXPECT_TRUE(fs::exists(path("many_0002.h5")));
+  EXPECT_FALSE(fs::exists(path("many.h5")));
+}
+
+TEST_F(Vfgen, GivesTheSameNumbersForAnyThreadCount) {
+  const auto csv = two_spheres();
+  EXPECT_EQ(vfgen("-q trace " + csv + " -o " + path("a.h5") + " --rays 20000 --threads 1").code, 0);
+  EXPECT_EQ(vfgen("-q trace " + csv + " -o " + path("b.h5") + " --rays 20000 --threads 2").code, 0);
+  EXPECT_EQ(granrad::read_view_factors(path("a.h5")).counts.hits,
+            granrad::read_view_factors(path("b.h5")).counts.hits);
+}
+
+TEST_F(Vfgen, QuietSaysNothing) {
+  EXPECT_EQ(vfgen("-q trace " + two_spheres() + " -o " + path("x.h5") + " --rays 100").text, "");
+}
+
+TEST_F(Vfgen, RefusesToFitGreyOrUnenclosedBeds) {
+  const auto csv = two_spheres();
+  ASSERT_EQ(vfgen("-q trace " + csv + " -o " + path("open.h5") + " --rays 100").code, 0);
+  expect_says(vfgen("fit " + path("open.h5") + " -o " + path("t.toml")), 2, "enclose");
+  ASSERT_EQ(vfgen("-q trace " + csv + " -o " + path("grey.h5") +
+                  " --rays 100 --box 0.01,0.004,0.004 --emissivity 0.5 --wall-emissivity 0.8")
+                .code,
+            0);
+  expect_says(vfgen("fit " + path("grey.h5") + " -o " + path("t.toml")), 2, "without --emissivity");
+  EXPECT_FALSE(fs::exists(path("t.toml")));
+}
+
+TEST_F(Vfgen, ChecksThePrintedTableAndReportsItsBadRow) {
+  const auto outcome = vfgen("check " + source_dir + "/data/correlations/li_2024_printed.toml");
+  expect_says(outcome, 2, "solid fraction 0.02: F_pw((h + r)/d = 1.00) = 0.61");
+  expect_says(outcome, 2, "F_pp is negative from d* = 3.54");  // 0.43
+}
+
+TEST_F(Vfgen, GeneratesTablesThatPassTheirCheckAndKeepsWhatIsThere) {
+  const auto config = write("generate.toml", R"(title = "test"
+[snapshots]
+solid_fractions = [0.1, 0.3]
+size_m = ["8 mm", "4 mm", "8 mm"]
+diameter_m = "0.8 mm"
+count = 2
+[trace]
+method = "embree"
+rays = 300
+)");
+  expect_says(vfgen("generate " + config + " -o " + path("out")), 0, "transmittance.toml");
+  expect_says(vfgen("check " + path("out/transmittance.toml")), 0, "sound");
+  EXPECT_TRUE(fs::exists(path("out/cubic.html")));
+  std::size_t files = 0;
+  fs::path first;
+  for (const auto& entry : fs::directory_iterator(path("out/traced"))) {
+    EXPECT_EQ(entry.path().extension(), ".h5");
+    first = entry.path();
+    ++files;
+  }
+  EXPECT_EQ(files, 4u);
+  const auto written = fs::last_write_time(first);
+  const auto table = [&] {
+    std::stringstream text;
+    text << std::ifstream(path("out/cubic.toml")).rdbuf();
+    return text.str();
+  };
+  const auto before = table();
+  EXPECT_EQ(vfgen("-q generate " + config + " -o " + path("out")).code, 0);
+  EXPECT_EQ(fs::last_write_time(first), written);  // not traced again
+  EXPECT_EQ(table(), before);
+  // The same files through `fit`: two rows, each from two snapshots.
+  expect_says(vfgen("fit " + path("out/traced") + "/*.h5 -o " + path("t.toml") +
+                    " --form transmittance --report " + path("t.html")),
+              0, "t.html");
+  EXPECT_TRUE(fs::exists(path("t.html")));
+}
+
+}  // namespace
