@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <numeric>
 
 #include "dem/scene/error.h"
 #include "dem/scene/import_stl.h"
@@ -72,6 +73,22 @@ std::vector<double> surface_emissivities(const Enclosure& enclosure, const Trace
   return emissivity;
 }
 
+/// Spheres in the order of the file (a Bed stands in ascending id, a dump often does not).
+void restore_file_order(Enclosure& enclosure, const std::vector<std::size_t>& file_row) {
+  if (file_row.empty()) return;
+  std::vector<std::size_t> order(enclosure.sphere_count());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return file_row[enclosure.particle[a]] < file_row[enclosure.particle[b]];
+  });
+  const Enclosure by_id = enclosure;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    enclosure.centre_m[k] = by_id.centre_m[order[k]];
+    enclosure.radius_m[k] = by_id.radius_m[order[k]];
+    enclosure.particle[k] = by_id.particle[order[k]];
+  }
+}
+
 }  // namespace
 
 const char* to_string(TraceMethod method) {
@@ -91,7 +108,8 @@ Box parse_box(const std::string& text) {
 }
 
 SnapshotEnclosure read_enclosure(const std::filesystem::path& snapshot, const EnclosureSettings& settings) {
-  Bed bed = read_snapshot(snapshot, settings.radius_m).bed;
+  const Snapshot read = read_snapshot(snapshot, settings.radius_m);
+  Bed bed = read.bed;
   const bool own_walls = !bed.walls.empty();
   if (own_walls && settings.box)
     throw InputError(
@@ -105,6 +123,7 @@ SnapshotEnclosure read_enclosure(const std::filesystem::path& snapshot, const En
   if (settings.box) add_box(bed, *settings.box);
   SnapshotEnclosure result;
   result.enclosure = make_enclosure(bed, settings.box || own_walls ? bed.box : unbounded());
+  restore_file_order(result.enclosure, read.file_row);
   result.left_out = bed.size() - result.enclosure.sphere_count();
   return result;
 }

@@ -26,8 +26,18 @@ double lot(std::uint64_t seed, std::size_t i, std::int32_t j, int unit) {
 
 }  // namespace
 
-PairCounts::PairCounts(std::size_t surfaces, std::size_t max_entries)
-    : rows_(surfaces), locks_(new Lock[surfaces]), max_entries_(max_entries) {}
+PairCounts::PairCounts(std::vector<char> kind, std::size_t max_entries)
+    : kind_(std::move(kind)),
+      rows_(kind_.size()),
+      locks_(new Lock[kind_.size()]),
+      max_entries_(max_entries) {}
+
+bool PairCounts::sampled(std::size_t i, std::size_t j) const {
+  constexpr std::size_t few_surfaces = 2000;
+  if (rows_.size() < few_surfaces || kind_[i] + kind_[j] == 2) return true;
+  const std::uint64_t pair = static_cast<std::uint64_t>(std::min(i, j)) << 32 | std::max(i, j);
+  return (pair * 0x9e3779b97f4a7c15u) >> 60 == 0;
+}
 
 PairCounts::Buffer::Buffer(PairCounts& counts, std::size_t memory_bytes) : counts_(counts) {
   const std::size_t rows = counts.rows_.size(), fair = memory_bytes / sizeof(std::int32_t) / rows;
@@ -146,7 +156,7 @@ void PairCounts::update_spreads() {
 #pragma omp for schedule(dynamic, 64)
   for (std::size_t i = 0; i < rows_.size(); ++i)
     for (Entry& e : rows_[i].slots) {
-      if (e.id == free_slot) continue;
+      if (e.id == free_slot || !sampled(i, static_cast<std::size_t>(e.id))) continue;
       const Entry* m = mirrored(i, e.id);
       if (e.total == 0 && m && m->total > 0) continue;
       const double current = e.current + (m ? m->current : 0.0), total = e.total + (m ? m->total : 0.0);
@@ -156,7 +166,7 @@ void PairCounts::update_spreads() {
 #pragma omp for schedule(dynamic, 64)
   for (std::size_t i = 0; i < rows_.size(); ++i)
     for (Entry& e : rows_[i].slots) {
-      if (e.id == free_slot || e.total > 0) continue;
+      if (e.id == free_slot || e.total > 0 || !sampled(i, static_cast<std::size_t>(e.id))) continue;
       const Entry* m = mirrored(i, e.id);
       if (m && m->total > 0) e.spread = m->spread;
     }
@@ -228,7 +238,7 @@ void merge_row(const Rows& a, const Rows& b, std::size_t i, Visit&& visit) {
 
 }  // namespace
 
-SymmetricCounts PairCounts::finish(const std::vector<char>& kind) {
+SymmetricCounts PairCounts::finish() {
   const std::size_t n = rows_.size();
   Rows before{std::vector<std::int64_t>(n + 1, 0), {}};
   for (std::size_t i = 0; i < n; ++i)
@@ -249,7 +259,8 @@ SymmetricCounts PairCounts::finish(const std::vector<char>& kind) {
   VariancePools pools;
   for (std::size_t i = 0; i < n; ++i)
     merge_row(before, after, i, [&](std::int32_t j, std::int64_t count, double variance) {
-      const int pool = kind[i] + kind[j], order = VariancePools::order(static_cast<double>(count));
+      if (!sampled(i, static_cast<std::size_t>(j))) return;
+      const int pool = kind_[i] + kind_[j], order = VariancePools::order(static_cast<double>(count));
       pools.variance[pool][order] += variance;
       pools.count[pool][order] += static_cast<double>(count);
     });
@@ -267,7 +278,7 @@ SymmetricCounts PairCounts::finish(const std::vector<char>& kind) {
     merge_row(before, after, i, [&](std::int32_t j, std::int64_t count, double) {
       sum.pattern.column.push_back(j);
       sum.count.push_back(count);
-      sum.variance.push_back(count * pools.ratio(kind[i] + kind[j], static_cast<double>(count)));
+      sum.variance.push_back(count * pools.ratio(kind_[i] + kind_[j], static_cast<double>(count)));
     });
   return sum;
 }

@@ -21,8 +21,12 @@ struct SymmetricCounts {
 /// additions in bunches, so that a row is in the cache while it is worked on.
 class PairCounts {
  public:
-  /// Rows may hold `max_entries` pairs (i, j) between them before thinning starts.
-  PairCounts(std::size_t surfaces, std::size_t max_entries);
+  /// One row per surface; `kind` (0 or 1) separates the pools of pairs whose variances are compared: between
+  /// replicates each pair has too few degrees of freedom, so the ratio variance / count is pooled over pairs
+  /// of like kinds and of counts within a factor of two; in large enclosures over a sample of 1 in 16 (pairs
+  /// of kind 1 with kind 1: all). Rows may hold `max_entries` pairs (i, j) between them before thinning
+  /// starts.
+  PairCounts(std::vector<char> kind, std::size_t max_entries);
 
   /// Bunches additions for one thread: predecessors wait in short rows until there are enough.
   class Buffer {
@@ -58,10 +62,8 @@ class PairCounts {
   void keep_within_limit(std::uint64_t seed);
   /// Ends one independent randomisation.
   void end_replicate();
-  /// S = C + C^T with variances. `kind` of each surface (0 or 1) separates the pools of pairs whose variances
-  /// are compared: between replicates each pair has too few degrees of freedom, so the ratio variance / count
-  /// is pooled over pairs of like kinds and of counts within a factor of two.
-  SymmetricCounts finish(const std::vector<char>& kind);
+  /// S = C + C^T with variances.
+  SymmetricCounts finish();
 
  private:
   struct Entry {
@@ -82,9 +84,11 @@ class PairCounts {
   /// The entry of the same pair in the other order, or nullptr.
   const Entry* mirrored(std::size_t i, std::int32_t j) const;
   void update_spreads();
+  bool sampled(std::size_t i, std::size_t j) const;
   static void grow(Row& row);
   std::size_t thin(std::size_t row, std::uint64_t seed);  ///< returns what is left
 
+  std::vector<char> kind_;
   std::vector<Row> rows_;
   std::unique_ptr<Lock[]> locks_;
   std::size_t max_entries_, entries_ = 0;

@@ -105,7 +105,7 @@ void ContactLists::sort_rows(Rows& rows, const Periods& periods, const Bed& bed,
     for (int a = 0; a < 3; ++a) near_origin_[3 * i + a] = rows.position[4 * i + a];
 }
 
-void ContactLists::find_near(const Rows& rows, const Model& model, const Periods& periods) {
+void ContactLists::find_near(const Rows& rows, const Periods& periods) {
   const std::int64_t n = rows.count;
   Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
   for (std::int64_t i = 0; i < n; ++i)
@@ -137,7 +137,6 @@ void ContactLists::find_near(const Rows& rows, const Model& model, const Periods
     return t;
   };
   for (int t = 0; t < threads; ++t) shares_[t].range = {n * t / threads, n * (t + 1) / threads};
-  (void)model;
 #pragma omp parallel num_threads(threads)
   {
     const int t = omp_get_thread_num();
@@ -211,7 +210,7 @@ std::int64_t ContactLists::prepare(Rows& rows, Model& model, const Periods& peri
     const double widest = widest_half_skin * model.largest_radius;
     half_skin_m_ = std::clamp(4 * margin_of(motion.fastest, steps), half_skin * model.largest_radius, widest);
     sort_rows(rows, periods, bed, 2 * (model.largest_radius + half_skin_m_) * 1.00001);
-    find_near(rows, model, periods);
+    find_near(rows, periods);
     memory_table_.build(memories_, rows);
     std::vector<std::vector<WallMemory>> at_walls(shares_.size());
     for (const auto& m : memories_) {

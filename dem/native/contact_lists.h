@@ -65,7 +65,7 @@ class ContactLists {
   void check_speeds(const Rows& rows, const Bed& bed) const;
   void set_reaches(Rows& rows, std::int64_t steps);
   void sort_rows(Rows& rows, const Periods& periods, const Bed& bed, double cell_m);
-  void find_near(const Rows& rows, const Model& model, const Periods& periods);
+  void find_near(const Rows& rows, const Periods& periods);
   void find_walls(const Rows& rows, const Periods& periods, const WallSurface& surface);
   Vec3 drift() const { return mean_velocity_ * (step_s_ * double(steps_since_sort_)); }
 

@@ -143,10 +143,9 @@ void NativeEngine::Impl::check_overlaps(const Bed& bed) {
                   where, deepest_overlap));
 }
 
-NativeEngine::NativeEngine(const Bed& bed, const Vec3& gravity, double step_s, const EngineOptions& options)
+NativeEngine::NativeEngine(const Bed&, const Vec3& gravity, double step_s, const EngineOptions& options)
     : impl_(std::make_unique<Impl>(gravity, step_s, options)) {
   if (!(step_s > 0)) throw InputError(fmt::format("dem.step_s = {} (must be positive)", step_s));
-  (void)bed;
 }
 
 NativeEngine::~NativeEngine() = default;

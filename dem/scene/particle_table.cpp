@@ -125,6 +125,7 @@ void ParticleTable::sort_by_id() {
   bed.temperature_K = permuted(bed.temperature_K, order);
   bed.material = permuted(bed.material, order);
   if (bed.size() > 0) bed.next_id = bed.id.back() + 1;
+  snapshot_.file_row = std::move(order);
 }
 
 Snapshot ParticleTable::finish() {

@@ -24,6 +24,7 @@ struct Snapshot {
   StateBlocks state;
   std::string origin;           ///< file it came from
   bool has_temperature = true;  ///< false: the file had none, temperature_K is a placeholder of 300 K
+  std::vector<std::size_t> file_row{};  ///< row of each particle in the file; empty: rows in order
 };
 
 /// Writes one frame: VTKHDF 1.0 UnstructuredGrid (points as vertices; PointData id, radius, temperature,

@@ -69,8 +69,8 @@ Enclosure pair(double r1, double r2, double s) {
   return boxed(spheres_in_open_space({-0.5 * s * axis, 0.5 * s * axis}, {r1, r2}), cube);
 }
 
-// Catches (planted and seen): X = (h^2/D) S, half the lines; sorting by u instead of depth leaves this green,
-// as two spheres are neighbours either way: the bed test sees that one.
+// Catches (planted and seen): directions crowded about one pole. Blind to the order of depth and to the scale
+// of X: the beds see those.
 TEST(LineFactors, TwoSpheres) {
   for (const double s : {2.0, 2.5, 4.0}) {
     const Repeated f = measured_factor(pair(r, r, s * r), 0, 1);
@@ -103,9 +103,7 @@ TEST(LineFactors, OverlappingSpheres) {
   EXPECT_LT(std::abs(f.sigmas_off(lens_factor(small, r, s))), student_limit) << "overlap of unequal spheres";
 }
 
-// An overlap of a whole radius, far beyond any bed, where it can be told apart: ordering by anything but the
-// chords (planted: by the nearest point of each sphere) still gives one exchange per line, so only the lens
-// sum is judged.
+// An overlap of a whole radius, far beyond any bed.
 TEST(LineFactors, HalfBuriedSphere) {
   const Repeated f = measured_factor(pair(r, r, r), 0, 1);
   EXPECT_LT(std::abs(f.sigmas_off(lens_factor(r, r, r))), student_limit);
@@ -128,7 +126,8 @@ TEST(LineFactors, SphereAndWalls) {
   }
 }
 
-// Catches (planted and seen): a wall polygon filled over [left, right] instead of [left, right).
+// Catches (planted and seen): wall polygons filled from floor(left) instead of ceil(left); crowded
+// directions.
 TEST(LineFactors, EmptyBox) {
   const auto exact = exact_empty_box(channel());
   const Enclosure e = boxed(spheres_in_open_space({}, {}), channel());

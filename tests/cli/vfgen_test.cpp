@@ -68,7 +68,7 @@ TEST_F(Vfgen, ExplainsItself) {
 TEST_F(Vfgen, RefusesBadUsageWithCode2) {
   const auto csv = two_spheres();
   expect_says(vfgen(""), 2, "subcommand");
-  expect_says(vfgen("tracee x"), 2, "tracee");
+  expect_says(vfgen("tracee x"), 2, "subcommand");
   expect_says(vfgen("trace " + csv), 2, "--output");
   expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --method rays"), 2, "embree");
   expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --rays 0"), 2, "--rays");

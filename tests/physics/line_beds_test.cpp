@@ -66,6 +66,7 @@ TEST(LineBeds, CountsAreSymmetricAndRowsClose) {
   }
 }
 
+// Catches (planted and seen): X = (h^2 / D) S, half the lines; discs drawn with 1.01 r.
 // Sampled area against true area, all surfaces: chi^2 of the launched counts is not known in advance
 // (low-discrepancy), so the spread between 12 runs judges the mean of the largest deviations: walls 0.2 %,
 // spheres 1 %.
@@ -76,7 +77,7 @@ TEST(LineBeds, EverySurfaceIsSampledInProportionToItsArea) {
     EXPECT_NEAR(row_sum(x, i) / x.area_m2[i], 1, i < dense_bed().sphere_count() ? 0.01 : 0.002) << i;
 }
 
-// Catches (planted and seen): gaps measured from the wrong side of a sphere, discs drawn with 1.01 r.
+// Catches (planted and seen): discs drawn with 1.01 r, depth sorted by its low bits only.
 TEST(LineBeds, MeanChordIsFourVoidVolumesOverArea) {
   for (const Enclosure* bed : {&dense_bed(), &mixed_bed()}) {
     const auto area = surface_areas(*bed);
@@ -157,7 +158,8 @@ Retraced retrace(const Enclosure& e, std::int64_t enough_lines) {
   return sum;
 }
 
-// Catches (planted and seen): depth sorted by its low bits only; a disc drawn one column to the right.
+// Catches (planted and seen): depth sorted by its low bits only; discs drawn one column to the right (the
+// comparison of view factors below is blind to that: all discs move alike); discs drawn with 1.01 r.
 TEST(LineBeds, EmbreeFindsEveryPairOnAHundredThousandLines) {
   const Retraced dense = retrace(dense_bed(), 100000);
   EXPECT_EQ(dense.unexplained, 0) << dense.pairs << " pairs, " << dense.grazing << " grazing";
@@ -227,7 +229,9 @@ TEST(LineBeds, IsothermalEnclosureExchangesNothingAtAll) {
   for (double q : sweep_black_heat(mixed_bed(), power, options(20))) EXPECT_EQ(q, 0);
 }
 
-// The standard errors of the heats and of the pairs are those found between independent runs, within 15 %.
+// Catches (planted and seen): variances of i before j and j before i added as if independent; lines walked
+// one way. The standard errors of the heats and of the pairs are those found between independent runs, within
+// 15 %.
 TEST(LineBeds, StandardErrorsAreHonest) {
   const Enclosure& bed = dense_bed();
   std::vector<double> power(bed.surface_count(), 0);
