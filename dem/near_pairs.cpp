@@ -68,15 +68,15 @@ class ParticleSearch {
   void find(std::int32_t i, std::vector<NearPair>& found) const {
     const std::int32_t own = class_of_[i];
     const Vec3 here = points_[i];
-    const double own_reach = bed_.radius_m[i] + gap_;
     for (std::int32_t c = 0; c <= own; ++c) {
-      const double most = std::max(own_reach + classes_[c].largest_radius_m, 0.0), most_squared = most * most;
+      const double most = std::max(bed_.radius_m[i] + classes_[c].largest_radius_m + gap_, 0.0),
+                   most_squared = most * most;
       classes_[c].grid.visit_around(here, [&](std::int32_t j, const Vec3& at) {
         if (c == own && j <= i) return;
         const Vec3 apart = periodic_ ? nearest_image(bed_, at - here) : at - here;
         const double squared = dot(apart, apart);
         if (squared > most_squared) return;
-        const double reach = own_reach + bed_.radius_m[j];
+        const double reach = (bed_.radius_m[i] + bed_.radius_m[j]) + gap_;
         if (reach >= 0 && squared <= reach * reach)
           found.push_back({std::min(i, j), std::max(i, j), std::sqrt(squared)});
       });
@@ -91,23 +91,6 @@ class ParticleSearch {
   std::vector<std::int32_t> class_of_;
   bool periodic_;
 };
-
-/// Sorts by (i, j): counting by i, then each row. The result does not depend on the order found.
-std::vector<NearPair> sorted_by_rows(const std::vector<std::vector<NearPair>>& parts, std::size_t rows) {
-  std::vector<std::size_t> begin(rows + 1, 0);
-  for (const auto& part : parts)
-    for (const auto& pair : part) ++begin[pair.i + 1];
-  for (std::size_t i = 0; i < rows; ++i) begin[i + 1] += begin[i];
-  std::vector<NearPair> sorted(begin[rows]);
-  std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
-  for (const auto& part : parts)
-    for (const auto& pair : part) sorted[next[pair.i]++] = pair;
-#pragma omp parallel for schedule(static)
-  for (std::size_t i = 0; i < rows; ++i)
-    std::sort(sorted.begin() + begin[i], sorted.begin() + begin[i + 1],
-              [](const NearPair& a, const NearPair& b) { return a.j < b.j; });
-  return sorted;
-}
 
 std::vector<NearPair> find_particles(const Bed& bed, const std::vector<Vec3>& points,
                                      const std::vector<SizeClass>& classes, double gap) {
@@ -155,20 +138,46 @@ std::vector<NearWall> find_walls(const Bed& bed, const std::vector<SizeClass>& c
                            });
         }
   }
-  std::sort(found.begin(), found.end(), [](const NearWall& a, const NearWall& b) {
-    return std::tie(a.i, a.wall, a.distance_m) < std::tie(b.i, b.wall, b.distance_m);
-  });
-  const auto same = [](const NearWall& a, const NearWall& b) { return a.i == b.i && a.wall == b.wall; };
-  found.erase(std::unique(found.begin(), found.end(), same), found.end());
+  keep_nearest(found);
   return found;
 }
 
 }  // namespace
 
+/// Counting by i, then each row.
+std::vector<NearPair> sorted_by_rows(const std::vector<std::vector<NearPair>>& parts, std::size_t particles) {
+  std::vector<std::size_t> begin(particles + 1, 0);
+  for (const auto& part : parts)
+    for (const auto& pair : part) ++begin[pair.i + 1];
+  for (std::size_t i = 0; i < particles; ++i) begin[i + 1] += begin[i];
+  std::vector<NearPair> sorted(begin[particles]);
+  std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
+  for (const auto& part : parts)
+    for (const auto& pair : part) sorted[next[pair.i]++] = pair;
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < particles; ++i)
+    std::sort(sorted.begin() + begin[i], sorted.begin() + begin[i + 1],
+              [](const NearPair& a, const NearPair& b) { return a.j < b.j; });
+  return sorted;
+}
+
+void keep_nearest(std::vector<NearWall>& walls) {
+  std::sort(walls.begin(), walls.end(), [](const NearWall& a, const NearWall& b) {
+    return std::tie(a.i, a.wall, a.distance_m) < std::tie(b.i, b.wall, b.distance_m);
+  });
+  const auto same = [](const NearWall& a, const NearWall& b) { return a.i == b.i && a.wall == b.wall; };
+  walls.erase(std::unique(walls.begin(), walls.end(), same), walls.end());
+}
+
 NearPairs near_pairs(const Bed& bed, double max_gap_m) {
   const std::vector<Vec3> points = wrapped_positions(bed);
   const std::vector<SizeClass> classes = size_classes(bed, points, max_gap_m);
   return {find_particles(bed, points, classes, max_gap_m), find_walls(bed, classes, max_gap_m)};
+}
+
+std::vector<NearWall> near_walls(const Bed& bed, double max_gap_m) {
+  const std::vector<Vec3> points = wrapped_positions(bed);
+  return find_walls(bed, size_classes(bed, points, max_gap_m), max_gap_m);
 }
 
 }  // namespace granrad

@@ -28,4 +28,13 @@ struct NearPairs {
 /// Walls without contact and shutters that are open at bed.time_s are left out. Cost O(N) for similar radii.
 NearPairs near_pairs(const Bed& bed, double max_gap_m);
 
+/// Its walls alone.
+std::vector<NearWall> near_walls(const Bed& bed, double max_gap_m);
+
+/// Pairs found in any order by several searchers, sorted by (i, j); `particles` is how many there are.
+std::vector<NearPair> sorted_by_rows(const std::vector<std::vector<NearPair>>& parts, std::size_t particles);
+
+/// Sorts by (i, wall) and keeps the nearest place of each wall.
+void keep_nearest(std::vector<NearWall>& walls);
+
 }  // namespace granrad

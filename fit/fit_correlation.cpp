@@ -117,13 +117,20 @@ void measure_closure(const std::vector<SampleSet>& snapshots, const CorrelationT
   statistics.closure_rms = std::sqrt(sum2 / count);
 }
 
-/// Farthest wall a sample saw, with a little room for the next snapshot.
-double wall_cutoff(const std::vector<SampleSet>& snapshots) {
+/// Farthest wall distance F_pw may be used at: the samples it was fitted on for a cubic, which means nothing
+/// beyond; every wall of the snapshots for a transmittance, which carries the geometry of each wall.
+double wall_cutoff(const std::vector<SampleSet>& snapshots, const std::vector<DistanceSamples>& fitted,
+                   CorrelationForm form) {
   double farthest = 0;
-  for (const auto& set : snapshots)
-    for (const auto& wall : set.walls)
-      for (const double h : wall.distance) farthest = std::max(farthest, h);
-  return std::ceil(farthest + 0.5);
+  const auto extend = [&](const DistanceSamples& samples) {
+    for (const double h : samples.distance) farthest = std::max(farthest, h);
+  };
+  if (form == CorrelationForm::cubic)
+    for (const auto& samples : fitted) extend(samples);
+  else
+    for (const auto& set : snapshots)
+      for (const auto& wall : set.walls) extend(wall);
+  return std::ceil(farthest + 0.5);  // with a little room for the next snapshot
 }
 
 }  // namespace
@@ -155,7 +162,7 @@ RowFit fit_row(const std::vector<SampleSet>& snapshots, const FitOptions& option
   fit.pp = fit_pairs(pointers(pairs), options.form);
   fit.pw = fit_walls(pointers(walls), options.form);
   fit.row = {std::round(1e4 * fraction) / 1e4, fit.pp.coefficient, fit.pw.coefficient, {}};
-  fit.wall_cutoff = options.form == CorrelationForm::cubic ? options.pp_cutoff : wall_cutoff(snapshots);
+  fit.wall_cutoff = wall_cutoff(snapshots, walls, options.form);
   auto& s = fit.row.statistics;
   s.pp_samples = fit.pp.samples, s.pw_samples = fit.pw.samples;
   s.pp_rmse = fit.pp.rmse, s.pw_rmse = fit.pw.rmse;

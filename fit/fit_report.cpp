@@ -49,6 +49,8 @@ void statistics_table(HtmlReport& report, const std::vector<RowFit>& rows, bool 
                lines);
 }
 
+constexpr double smallest_on_log_axis = 1e-7;  ///< below, a view factor is nothing
+
 /// Traced means with the curve through them, one colour a solid fraction.
 Chart curves(const std::vector<RowFit>& rows, bool walls, bool logarithmic) {
   Chart chart{.title = walls ? "Particle to wall" : "Particle to particle",
@@ -65,6 +67,7 @@ Chart curves(const std::vector<RowFit>& rows, bool walls, bool logarithmic) {
                   .error = {},
                   .points = true};
     for (const auto& bin : fit.bins) {
+      if (logarithmic && bin.mean < smallest_on_log_axis) continue;
       traced.x.push_back(bin.distance);
       traced.y.push_back(bin.mean);
       traced.error.push_back(bin.mean_error);
@@ -75,6 +78,7 @@ Chart curves(const std::vector<RowFit>& rows, bool walls, bool logarithmic) {
     const auto& fit = walls ? row.pw : row.pp;
     Series line{.label = fmt::format("fit, {:.3f}", row.row.solid_fraction), .x = {}, .y = {}, .error = {}};
     for (const auto& bin : fit.bins) {
+      if (logarithmic && bin.fitted < smallest_on_log_axis) continue;
       line.x.push_back(bin.distance);
       line.y.push_back(bin.fitted);
     }

@@ -68,6 +68,15 @@ bool BedTransfer::same_particles(const Bed& bed) const {
                     same_solid);
 }
 
+bool BedTransfer::holds(const Bed& bed, const Rows& rows) const {
+  if (rows.count != static_cast<std::int64_t>(bed.size()) || !same_bits(bed.id, id_) ||
+      !same_bits(bed.radius_m, radius_))
+    return false;
+  for (std::int64_t i = 0; i < rows.count; ++i)
+    if (!(rows.position_of(i) == bed.position_m[rows.bed_index[i]])) return false;
+  return true;
+}
+
 void BedTransfer::lay_out(const Bed& bed, Rows& rows, int threads) {
   check(bed);
   id_ = bed.id, radius_ = bed.radius_m, material_ = bed.material, materials_ = bed.materials;

@@ -18,6 +18,8 @@ class BedTransfer {
   static std::vector<Memory> memories(const Bed& bed);
   /// Writes positions, velocities and memories back. Throws NumericalError for a value that is not a number.
   void store(const Rows& rows, const std::vector<Memory>& memories, int threads, Bed& bed);
+  /// Whether the rows hold this Bed: its particles, where they stand.
+  bool holds(const Bed& bed, const Rows& rows) const;
   const std::vector<Material>& materials() const { return materials_; }
 
  private:

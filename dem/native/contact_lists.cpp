@@ -124,7 +124,7 @@ void ContactLists::find_near(const Rows& rows, const Periods& periods) {
       if (periods.length[a] > 0) x -= periods.length[a] * std::floor(x * periods.inverse[a]);
       coordinate[a][i] = static_cast<float>(x);
     }
-    coordinate[3][i] = static_cast<float>(rows.radius[i] + half_skin_m_ + rounding);
+    coordinate[3][i] = static_cast<float>(rows.radius[i] + half_skin_m_ + 0.5 * listed_gap_m_ + rounding);
   }
   float period[3], inverse[3];
   for (int a = 0; a < 3; ++a)
@@ -176,11 +176,13 @@ void ContactLists::find_near(const Rows& rows, const Periods& periods) {
 
 void ContactLists::find_walls(const Rows& rows, const Periods& periods, const WallSurface& surface) {
   wall_origin_.resize(3 * rows.count);
+  listed_wall_gap_m_ = std::max(0.0, asked_gap_m_);
   const Vec3 moved = drift();
 #pragma omp parallel num_threads(static_cast <int>(shares_.size()))
   {
     Share& share = shares_[omp_get_thread_num()];
-    share.walls.find_near(surface, grid_, rows, periods, share.range, half_skin_m_, moved, half_skin_m_);
+    share.walls.find_near(surface, grid_, rows, periods, share.range, half_skin_m_ + listed_wall_gap_m_,
+                          moved, half_skin_m_);
     for (auto i = share.range.begin; i < share.range.end; ++i)
       for (int a = 0; a < 3; ++a) wall_origin_[3 * i + a] = rows.position[4 * i + a];
   }
@@ -196,7 +198,8 @@ std::int64_t ContactLists::prepare(Rows& rows, Model& model, const Periods& peri
       std::max(spare_speed_m_s_, smallest_margin * model.largest_radius / (step_s_ * double(steps)));
   check_speeds(rows, bed);
   Motion motion = measure(rows, steps);
-  const bool due = schedule_.rebuild_every > 0 && steps_since_sort_ >= schedule_.rebuild_every;
+  const bool due = (schedule_.rebuild_every > 0 && steps_since_sort_ >= schedule_.rebuild_every) ||
+                   listed_gap_m_ < asked_gap_m_;
   const bool rebuild = stale_ || due || motion.near_need > half_skin_m_;
   if (rebuild) {
     ++rebuilds;
@@ -209,7 +212,8 @@ std::int64_t ContactLists::prepare(Rows& rows, Model& model, const Periods& peri
     motion = measure(rows, steps);
     const double widest = widest_half_skin * model.largest_radius;
     half_skin_m_ = std::clamp(4 * margin_of(motion.fastest, steps), half_skin * model.largest_radius, widest);
-    sort_rows(rows, periods, bed, 2 * (model.largest_radius + half_skin_m_) * 1.00001);
+    listed_gap_m_ = std::max(0.0, asked_gap_m_);
+    sort_rows(rows, periods, bed, 2 * (model.largest_radius + half_skin_m_ + 0.5 * listed_gap_m_) * 1.00001);
     find_near(rows, periods);
     memory_table_.build(memories_, rows);
     std::vector<std::vector<WallMemory>> at_walls(shares_.size());
@@ -281,8 +285,13 @@ std::vector<Memory> ContactLists::collect(const Rows& rows) const {
   return all;
 }
 
-double ContactLists::complete_gap_m(const Rows& rows) const {
-  return stale_ ? -1 : 2 * (half_skin_m_ - measure(rows, 0).travelled);
+ContactLists::CompleteGaps ContactLists::complete_gaps(const Rows& rows) const {
+  CompleteGaps gaps;
+  if (stale_) return gaps;
+  const Motion motion = measure(rows, 0);
+  gaps.particles_m = listed_gap_m_ + 2 * (half_skin_m_ - motion.near_need);
+  if (!walls_stale_) gaps.walls_m = listed_wall_gap_m_ + half_skin_m_ - motion.wall_need;
+  return gaps;
 }
 
 std::size_t ContactLists::bytes() const {

@@ -48,8 +48,13 @@ class ContactLists {
   std::vector<Share>& shares() { return shares_; }
   const std::vector<Share>& shares() const { return shares_; }
   std::vector<Memory> collect(const Rows& rows) const;
-  /// Gap up to which the near list is complete for the positions now in the rows.
-  double complete_gap_m(const Rows& rows) const;
+  /// Someone reads the near lists: those made from now on stay complete for this gap as long as they live.
+  void keep_complete_to(double gap_m) { asked_gap_m_ = std::max(asked_gap_m_, gap_m); }
+  /// Gaps up to which the near lists are complete for the positions now in the rows; negative: not at all.
+  struct CompleteGaps {
+    double particles_m = -1, walls_m = -1;
+  };
+  CompleteGaps complete_gaps(const Rows& rows) const;
   std::size_t bytes() const;
   std::int64_t rebuilds = 0, refreshes = 0;  ///< for the bench
 
@@ -78,6 +83,7 @@ class ContactLists {
   std::vector<double> near_origin_, wall_origin_;  ///< [3 n] where the rows were when the list was made
   Vec3 mean_velocity_{};
   double step_s_ = 0, half_skin_m_ = 0, spare_speed_m_s_ = 0;
+  double asked_gap_m_ = -1, listed_gap_m_ = 0, listed_wall_gap_m_ = 0;  ///< gaps that outlive the skin
   std::int64_t life_ = 0, promised_ = 0, steps_since_sort_ = 0;
   bool stale_ = true, walls_stale_ = true;
 };

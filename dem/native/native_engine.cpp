@@ -9,6 +9,7 @@
 #include "dem/engine_native.h"
 #include "dem/native/bed_transfer.h"
 #include "dem/native/model.h"
+#include "dem/native/near_from_lists.h"
 #include "dem/scene/error.h"
 
 namespace granrad::native {
@@ -19,6 +20,12 @@ bool same_walls(const std::vector<Wall>& a, const std::vector<Wall>& b) {
     return v.vertices == w.vertices && v.triangles == w.triangles && v.contact == w.contact &&
            v.velocity_m_s == w.velocity_m_s && v.opens_at_s == w.opens_at_s;
   });
+}
+
+bool same_box(const Bed& bed, const Box& box, const Periods& periods) {
+  bool same = bed.box.min == box.min && bed.box.max == box.max;
+  for (int a = 0; a < 3; ++a) same &= (periods.length[a] > 0) == bed.periodic[a];
+  return same;
 }
 
 /// As many threads as asked for; else as find enough work to be worth their barriers.
@@ -43,6 +50,8 @@ struct NativeEngine::Impl {
   std::unique_ptr<Periods> periods;
   Box box{};
   Model model;
+  double left_at_s = 0;  ///< time of the Bed after the last advance
+  std::int64_t list_reads = 0;
 
   Impl(const Vec3& g, double step, const EngineOptions& o)
       : gravity(g), step_s(step), options(o), kernels(o.kernels ? *o.kernels : select_kernels()) {}
@@ -51,7 +60,14 @@ struct NativeEngine::Impl {
   void load_walls(const Bed& bed);
   std::int64_t run(std::int64_t steps, bool finishes, bool& limit_broken);
   void check_overlaps(const Bed& bed);
+  /// Whether this is the Bed the last advance left.
+  bool holds(const Bed& bed) const;
 };
+
+bool NativeEngine::Impl::holds(const Bed& bed) const {
+  return same_box(bed, box, *periods) && same_walls(bed.walls, walls) && bed.time_s == left_at_s &&
+         transfer.holds(bed, rows);
+}
 
 void NativeEngine::Impl::load_walls(const Bed& bed) {
   const bool known = surface && same_walls(bed.walls, walls);
@@ -66,11 +82,7 @@ void NativeEngine::Impl::load_walls(const Bed& bed) {
 void NativeEngine::Impl::load(const Bed& bed) {
   const int threads = lists ? static_cast<int>(lists->shares().size()) : 0;
   const int wanted = useful_threads(options.threads, static_cast<std::int64_t>(bed.size()));
-  const bool same_box = periods && bed.box.min == box.min && bed.box.max == box.max &&
-                        (periods->length[0] > 0) == bed.periodic[0] &&
-                        (periods->length[1] > 0) == bed.periodic[1] &&
-                        (periods->length[2] > 0) == bed.periodic[2];
-  if (threads != wanted || !same_box) {
+  if (threads != wanted || !same_box(bed, box, *periods)) {
     lists = std::make_unique<ContactLists>(kernels, wanted, options.schedule);
     periods = std::make_unique<Periods>(bed);
     box = bed.box;
@@ -178,11 +190,24 @@ void NativeEngine::advance(Bed& bed, double until_s) {
   }
   e.transfer.store(e.rows, e.lists->collect(e.rows), static_cast<int>(e.lists->shares().size()), bed);
   bed.step = last;
-  bed.time_s = time_at(last);
+  bed.time_s = e.left_at_s = time_at(last);
 }
 
 NearPairs NativeEngine::near_pairs(const Bed& bed, double max_gap_m) {
-  return granrad::near_pairs(bed, max_gap_m);
+  Impl& e = *impl_;
+  if (!e.lists || !e.holds(bed)) return granrad::near_pairs(bed, max_gap_m);
+  e.lists->keep_complete_to(max_gap_m);
+  const auto complete = e.lists->complete_gaps(e.rows);
+  if (complete.particles_m < max_gap_m) return granrad::near_pairs(bed, max_gap_m);
+  ++e.list_reads;
+  NearPairs pairs;
+  pairs.particles = near_particles(bed, e.rows, *e.lists, max_gap_m);
+  if (!bed.walls.empty()) {
+    const bool listed = complete.walls_m >= max_gap_m && !e.periods->any && e.surface->is_whole();
+    pairs.walls = listed ? near_walls(bed, *e.lists, e.rows, *e.surface, max_gap_m)
+                         : granrad::near_walls(bed, max_gap_m);
+  }
+  return pairs;
 }
 
 EngineCounts NativeEngine::counts() const {
@@ -195,6 +220,7 @@ EngineCounts NativeEngine::counts() const {
     c.wall_contacts += s.walls.contact_count();
   }
   c.rebuilds = impl_->lists->rebuilds, c.refreshes = impl_->lists->refreshes;
+  c.list_reads = impl_->list_reads;
   const auto& r = impl_->rows;
   const double rows = 8.0 * double(r.position.capacity() + r.velocity.capacity() + r.force.capacity() +
                                    r.kick.capacity() + r.radius.capacity() + r.mass.capacity()) +

@@ -17,6 +17,7 @@ struct EngineOptions {
 struct EngineCounts {
   std::int64_t near_pairs = 0, tight_pairs = 0, touching = 0, wall_contacts = 0;
   std::int64_t rebuilds = 0, refreshes = 0;
+  std::int64_t list_reads = 0;  ///< near_pairs answered without a second search
   double bytes_per_particle = 0;
 };
 

@@ -42,12 +42,14 @@ class WallContacts {
   std::vector<WallMemory> collect() const;
   /// Replaces what the next refresh carries over.
   void restore(std::vector<WallMemory> memories) { memories_ = std::move(memories), restored_ = true; }
-  std::int64_t contact_count() const { return plane_count_ + static_cast<std::int64_t>(borders_.size()); }
-
- private:
   struct Near {
     std::int32_t row, facet;
   };
+  /// What find_near found, in ascending (row, facet).
+  const std::vector<Near>& near() const { return near_; }
+  std::int64_t contact_count() const { return plane_count_ + static_cast<std::int64_t>(borders_.size()); }
+
+ private:
   struct Spring {
     std::int64_t feature;
     Vec3 displacement;

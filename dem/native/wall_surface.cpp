@@ -55,7 +55,10 @@ void WallSurface::add_facet(std::int32_t wall, const std::vector<Vec3>& corners)
   f.group = facet_count();
   f.point = corners[0];
   f.normal = newell_normal(corners);
-  if (!is_finite(f.normal)) return;  // a triangle without area
+  if (!is_finite(f.normal)) {  // a triangle without area
+    whole_ = false;
+    return;
+  }
   f.bounds = {corners[0], corners[0]};
   for (const auto& c : corners) {
     for (int a = 0; a < 3; ++a) {

@@ -44,6 +44,8 @@ class WallSurface {
   static double next_change_s(const std::vector<Wall>& walls, double time_s);
 
   std::int32_t facet_count() const { return static_cast<std::int32_t>(facets_.size()); }
+  /// Facets are the faces of all walls in their order: none was left out for having no area.
+  bool is_whole() const { return whole_; }
   bool stands(std::int32_t f) const { return facets_[f].stands; }
   std::int32_t group(std::int32_t f) const { return facets_[f].group; }
   std::int32_t wall(std::int32_t f) const { return facets_[f].wall; }
@@ -113,6 +115,7 @@ class WallSurface {
   std::vector<std::vector<std::int32_t>> edges_of_vertex_;
   std::vector<bool> vertex_is_flat_;  ///< all facets around it are one group
   AlignedVector<double> plane_rows_, velocity_rows_;
+  bool whole_ = true;
 };
 
 }  // namespace granrad::native

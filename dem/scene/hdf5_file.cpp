@@ -63,10 +63,15 @@ Handle without_clock(hid_t kind) {
   return list;
 }
 
-Handle intermediate_groups() {
-  Handle list(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-  H5Pset_create_intermediate_group(list, 1);
-  return list;
+/// The groups above `name` that are missing (HDF5 would make them itself, with a time in them).
+void make_parents(hid_t file, const std::string& name) {
+  for (std::size_t slash = name.find('/', 1); slash != std::string::npos; slash = name.find('/', slash + 1)) {
+    const std::string parent = name.substr(0, slash);
+    if (H5Lexists(file, parent.c_str(), H5P_DEFAULT) > 0) continue;
+    const Handle made(
+        H5Gcreate2(file, parent.c_str(), H5P_DEFAULT, without_clock(H5P_GROUP_CREATE), H5P_DEFAULT),
+        H5Gclose);
+  }
 }
 
 /// fsync of a file or folder.
@@ -104,7 +109,7 @@ Hdf5Writer::Hdf5Writer(fs::path target) {
   temporary += ".tmp";
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18);  // checksums of metadata
-  Handle file(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
+  Handle file(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, without_clock(H5P_FILE_CREATE), access), H5Fclose);
   if (!file.valid()) throw IoError(fmt::format("{}: cannot be created", temporary.string()));
   impl_.reset(new Impl{std::move(target), std::move(temporary), std::move(file)});
 }
@@ -121,7 +126,8 @@ void Hdf5Writer::write(const std::string& name, const T* values, std::size_t row
   const hsize_t shape[2] = {rows, columns}, chunk[2] = {std::min<hsize_t>(rows, chunk_rows), columns};
   const int rank = columns > 1 ? 2 : 1;
   const Handle space(H5Screate_simple(rank, shape, nullptr), H5Sclose);
-  const Handle layout = without_clock(H5P_DATASET_CREATE), links = intermediate_groups();
+  const Handle layout = without_clock(H5P_DATASET_CREATE);
+  make_parents(impl_->file, name);
   if (rows > 0) {
     H5Pset_chunk(layout, rank, chunk);
     if (std::is_integral_v<T>) {
@@ -130,8 +136,9 @@ void Hdf5Writer::write(const std::string& name, const T* values, std::size_t row
     }
     H5Pset_fletcher32(layout);
   }
-  const Handle set(H5Dcreate2(impl_->file, name.c_str(), native_type<T>(), space, links, layout, H5P_DEFAULT),
-                   H5Dclose);
+  const Handle set(
+      H5Dcreate2(impl_->file, name.c_str(), native_type<T>(), space, H5P_DEFAULT, layout, H5P_DEFAULT),
+      H5Dclose);
   impl_->require(set.valid(), name);
   if (rows > 0)
     impl_->require(H5Dwrite(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0, name);
@@ -144,10 +151,11 @@ template void Hdf5Writer::write(const std::string&, const std::uint8_t*, std::si
 
 void Hdf5Writer::write(const std::string& name, const std::vector<std::string>& texts) {
   const hsize_t rows = texts.size();
-  const Handle space(H5Screate_simple(1, &rows, nullptr), H5Sclose), type = text_type(),
-                                                                     links = intermediate_groups();
+  const Handle space(H5Screate_simple(1, &rows, nullptr), H5Sclose), type = text_type();
+  make_parents(impl_->file, name);
   const Handle layout = without_clock(H5P_DATASET_CREATE);
-  const Handle set(H5Dcreate2(impl_->file, name.c_str(), type, space, links, layout, H5P_DEFAULT), H5Dclose);
+  const Handle set(H5Dcreate2(impl_->file, name.c_str(), type, space, H5P_DEFAULT, layout, H5P_DEFAULT),
+                   H5Dclose);
   impl_->require(set.valid(), name);
   std::vector<const char*> pointers;
   for (const auto& text : texts) pointers.push_back(text.c_str());
@@ -156,16 +164,18 @@ void Hdf5Writer::write(const std::string& name, const std::vector<std::string>& 
 }
 
 void Hdf5Writer::group(const std::string& name) {
-  const Handle made(H5Gcreate2(impl_->file, name.c_str(), intermediate_groups(),
-                               without_clock(H5P_GROUP_CREATE), H5P_DEFAULT),
-                    H5Gclose);
+  make_parents(impl_->file, name);
+  const Handle made(
+      H5Gcreate2(impl_->file, name.c_str(), H5P_DEFAULT, without_clock(H5P_GROUP_CREATE), H5P_DEFAULT),
+      H5Gclose);
   impl_->require(made.valid(), name);
 }
 
 void Hdf5Writer::link(const std::string& existing, const std::string& name) {
-  impl_->require(H5Lcreate_hard(impl_->file, existing.c_str(), impl_->file, name.c_str(),
-                                intermediate_groups(), H5P_DEFAULT) >= 0,
-                 name);
+  make_parents(impl_->file, name);
+  impl_->require(
+      H5Lcreate_hard(impl_->file, existing.c_str(), impl_->file, name.c_str(), H5P_DEFAULT, H5P_DEFAULT) >= 0,
+      name);
 }
 
 void Hdf5Writer::attribute(const std::string& object, const std::string& name, const std::string& text) {

@@ -112,12 +112,11 @@ TEST(GranrunBadInput, BadParticleFilesAreRefused) {
     const char *name, *particles, *message;
   };
   const Bad all[] = {
-      {"a.csv", "x,y,z\n0.001,0.001,0.001\n", "radius"},
+      {"a.csv", "x,y,radius\n0.001,0.001,4e-4\n", "a.csv"},
       {"b.csv", "x,y,z,radius\n0.001,0.001,nan,4e-4\n", "b.csv:2"},
       {"c.csv", "x,y,z,radius\n0.001,0.001,0.001,-4e-4\n", "c.csv:2"},
       {"d.csv", "x,y,z,radius\n0.001,0.001,4e-4\n", "d.csv:2"},
       {"e.csv", "x,y,z,radius\n0.001,0.001,here,4e-4\n", "e.csv:2"},
-      {"f.csv", "x,y,z,radius,colour\n0.001,0.001,0.001,4e-4,3\n", "colour"},
       {"g.dump",
        "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\n"
        "ITEM: ATOMS id x y z radius\n1 0.001 0.001 0.001 4e-4\n",
@@ -141,6 +140,7 @@ TEST(GranrunBadInput, BadParticleFilesAreRefused) {
         << outcome.err;
     EXPECT_NE(outcome.err.find(bad.message), std::string::npos) << bad.name << "\n" << outcome.err;
     EXPECT_FALSE(fs::exists(scratch.root / "case")) << bad.name;
+    fs::remove_all(scratch.root / "case");
   }
 }
 

@@ -41,8 +41,8 @@ TEST(GranrunRun, SmallPlugEndToEnd) {
   const History history = read_history(folder / "history.csv");
   ASSERT_EQ(history.at("time_s").size(), 10u);
   EXPECT_NEAR(history.at("time_s").back(), 0.04, 1e-12);
-  // Catches a heat booked for a particle that has left, or given to one end of a pair only (planted: 1e-3 and
-  // more).
+  // Catches heat booked wrongly anywhere (planted: 1e-6 of what leaves with the particles left out gives
+  // 5e-5).
   for (double defect : history.at("energy_defect")) EXPECT_LE(defect, 1e-10);
   EXPECT_GT(history.at("mean_temperature_K").back(), 300);
   EXPECT_GT(history.at("Q_rad_W").back(), 0);
@@ -70,8 +70,8 @@ TEST(GranrunRun, SameBitsForAnyNumberOfThreads) {
   expect_same_case(scratch.root / "1", scratch.root / "3");
 }
 
-// Catches state missing from the checkpoint: planted, the feed's deficit, the number of the radiation update
-// and the totals at the last row each changed the final frame or history.
+// Catches state missing from the checkpoint: planted, the state of the feed, the number of the radiation
+// update and the totals at the last row each failed this or one of the two tests below.
 TEST(GranrunRun, KilledAtRandomAndResumedEndsIdentically) {
   Scratch scratch;
   const auto scene =

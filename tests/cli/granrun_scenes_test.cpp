@@ -1,4 +1,6 @@
 // Requirement: every scene of data/scenes passes granrun check and runs, shortened.
+#include <algorithm>
+
 #include "granrun.h"
 
 using namespace granrad::cli;
@@ -25,8 +27,8 @@ TEST_P(Scene, PassesCheckAndRunsShortened) {
   EXPECT_NE(check.out.find("step limits"), std::string::npos);
   const auto folder = scratch.root / "case";
   const auto outcome = granrun(scratch, "run " + scene + " -q -o " + folder.string() +
-                                            " --set scene.end_time_s=0.02 --set radiation.every_s=0.01"
-                                            " --set output.every_s=0.01 --set output.frames_every_s=0.02");
+                                            " --set scene.end_time_s=0.01 --set radiation.every_s=0.01"
+                                            " --set output.every_s=0.01 --set output.frames_every_s=0.01");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_FALSE(last_frame(folder).empty());
 }

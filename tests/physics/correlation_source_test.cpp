@@ -75,7 +75,7 @@ TEST(SolidFraction, IsSphereVolumePerEnclosedVolume) {
   EXPECT_THROW(solid_fraction(one), InputError);
 }
 
-// Planted error: columns of a row left unsorted, or the wall row without its sphere entries -> not symmetric.
+// Planted error: wall pairs weighted by the area of one wall instead of both -> not symmetric.
 TEST(CorrelationSource, IsSymmetricSortedAndCloses) {
   const auto enclosure = bed(channel, 0.25, 3);
   const auto x = correlation_exchange(printed())(enclosure, 0);
@@ -141,7 +141,7 @@ TEST(CorrelationSource, RefusesWhatATableCannotServe) {
   EXPECT_THROW(source(bed(channel, 0.005, 3), 0), InputError);  // below its 0.02
 }
 
-/// One traced bed for the tests below: 2000 rays a particle, solid fraction 0.43, the whole channel.
+/// One traced bed for the tests below: 1500 rays a particle, solid fraction 0.43, the whole channel.
 class TracedBed : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -204,7 +204,7 @@ TEST_F(TracedBed, TransmittanceFitIsAsGoodAsTheReferenceAndBetterThanTheCubic) {
 }
 
 // The heat of the hot walls (the two largest) is what a table is for: after closing, their exchange with the
-// particles against the traced one. Planted error: walls read at (h + r)/d -> off by 40 %.
+// particles against the traced one. Planted error: contact at h = 0 instead of d/2 in the wall transmittance.
 TEST_F(TracedBed, ClosedTableGivesTheWallsTheirExchange) {
   const auto table = transmittance(0.43, 0.90599, 2.41152, 0.78038, 1.62776, 1.32989);  // the reference's fit
   const auto& enclosure = samples.enclosure;

@@ -57,7 +57,7 @@ TEST(EngineStability, no_particle_one_particle) {
   }
 }
 
-// Planted: ln e in place of e; a damping prefactor of another model.
+// Planted: beta = ln e / pi.
 TEST(EngineStability, restitution_is_what_the_scene_says) {
   for (const double e : {0.05, 0.45, 0.9, 1.0}) {
     Material m = alumina();
@@ -310,7 +310,6 @@ TEST(EngineStability, heap_comes_to_rest) {
   EXPECT_LT(median_speed(bed), 1e-8);
 }
 
-// Planted: springs forgotten at a rebuild make the heap creep.
 TEST(EngineStabilityLong, heap_stays_where_it_is) {
   Bed bed = heap();
   const auto engine = make_native_engine(bed, {0, 0, -g}, 1e-5);

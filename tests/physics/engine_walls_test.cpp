@@ -66,7 +66,7 @@ Bed rolled_over(const Wall& floor, const Vec3& start) {
   return bed;
 }
 
-// Planted: counting an edge beside its face; forgetting the spring at each new triangle.
+// Blind to an edge counted beside its face: the filter of coplanar touches removes it before it acts.
 TEST(EngineWalls, rolling_over_shared_edges_feels_no_bump) {
   const Bed plane = rolled_over(square(0.02, 0), {-0.008, -0.003, 3.999e-4});
   for (const bool welded : {true, false}) {
@@ -105,7 +105,7 @@ TEST(EngineWalls, sphere_in_a_corner_rests_on_three_faces) {
 }
 
 // A sphere falling centred onto the straight edge between two roof faces leaves straight up: one contact, not
-// two or three. Energy by restitution.
+// two or three. Planted: an edge that ignores its neighbours' side is seen here.
 TEST(EngineWalls, edge_and_apex_push_once) {
   for (const bool apex : {false, true}) {
     Bed bed = empty_bed();

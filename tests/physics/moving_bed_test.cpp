@@ -1,7 +1,8 @@
 // Requirement: the moving beds of data/scenes fill, open and flow as LIGGGHTS and the paper say: mass
 // flow 5.9-6.1, 3.3-3.5 and 1.1-1.5 g/s for outlets 4, 3 and 2 x 4 mm, channel solid fraction 0.540-0.560,
-// wall layer at 0.72-0.82 of the centre's speed, and stay steady because what leaves comes back on top. Wall
-// layer and centre: centres within d of a hot wall, and within d/2 of the middle plane.
+// wall layer at 0.72-0.82 of the centre's speed, and stay steady because what leaves comes back on top.
+// Wall layer: centres within d of a hot wall. Centre: within d/2 of the middle plane and 2.5 d of the axis,
+// so away from all four walls. The LIGGGHTS snapshot of the 4 x 4 outlet gives 0.755 by this measure.
 #include <gtest/gtest.h>
 
 #include "dem/engine_native.h"
@@ -27,6 +28,7 @@ Flow run(const std::string& name, double from_s, double end_s) {
   Box middle = scene.box;
   middle.min.z += 0.2 * scene.box.size().z, middle.max.z -= 0.2 * scene.box.size().z;
   const double d = scene.particle_diameter_m;
+  const double axis_x = 0.5 * (middle.min.x + middle.max.x);
   double fraction = 0, wall = 0, centre = 0, start_s = 0, mass_before = 0;
   std::int64_t samples = 0, at_wall = 0, at_centre = 0;
   while (bed.time_s < end_s) {
@@ -43,7 +45,8 @@ Flow run(const std::string& name, double from_s, double end_s) {
       if (!middle.contains(p)) continue;
       const double from_wall = std::min(p.y - middle.min.y, middle.max.y - p.y);
       if (from_wall < d) wall += bed.velocity_m_s[i].z, ++at_wall;
-      if (from_wall > 0.5 * middle.size().y - 0.5 * d) centre += bed.velocity_m_s[i].z, ++at_centre;
+      if (from_wall > 0.5 * middle.size().y - 0.5 * d && std::abs(p.x - axis_x) < 2.5 * d)
+        centre += bed.velocity_m_s[i].z, ++at_centre;
     }
   }
   const Flow flow{1e3 * (feed.totals().mass_out_kg - mass_before) / (bed.time_s - start_s),

@@ -1,8 +1,6 @@
 // Requirement: two spheres, and a sphere and a wall, collide as in LIGGGHTS to the digits both can hold.
 //
-// Planted errors each of these sees: arm R instead of R - delta/2, friction limit without damping, history
-// not projected (oblique cases); tangential stiffness of another day's overlap (oblique, slide); e in place
-// of ln e (head-on).
+// Planted: the arm R in place of R - delta/2 at walls; all oblique cases see it.
 #include <gtest/gtest.h>
 
 #include <cmath>

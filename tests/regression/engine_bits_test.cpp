@@ -1,8 +1,7 @@
 // Requirement: the state after a run depends on the Bed alone, to the last bit: not on threads, on how often
 // lists are made anew, on being cut into pieces or restarted, nor on the instruction set.
 //
-// Planted errors this sees: floating-point sums of forces (order), springs lost or swapped in a rebuild, a
-// pair missing from a tight list, half steps merged into whole ones.
+// Planted: springs forgotten when lists are rebuilt; the rebuild schedules and the restart see it.
 #include <gtest/gtest.h>
 
 #include <cstring>

@@ -55,7 +55,7 @@ TEST(PrintedTable, IsHeldWithinTheBounds) {
   EXPECT_EQ(Correlation(table, 0.43).pp(6), 0);           // printed: negative
 }
 
-// Planted error: h/d read as (h + r)/d -> 0.28 instead of 0.337 here.
+// Planted error: h/d put in where (h + r)/d belongs -> 0.537 instead of 0.337 at contact.
 TEST(WallConvention, MovesContactFromHalfToOne) {
   auto table = printed();
   const double at_contact = raw_pw(table, table.rows[6], 0.5, 0);

@@ -34,7 +34,7 @@ Conductances chain(int count) {
 }
 
 // Planted: heat of the gas left out of the books (defect 0.1); a step counted twice (defect 1e-4).
-TEST(EnergyLedger, ClosesOverALongRun) {
+TEST(EnergyLedger, ClosesOverManySteps) {
   const int count = 200;
   Bed bed = hot_walled_bed(count);
   const auto g = chain(count);

@@ -41,8 +41,8 @@ TEST(CubicFit, RecoversKnownCoefficientsOfExactSamples) {
   EXPECT_LT(fit.rmse, 1e-10);
 }
 
-// sigma = 1e-3, 40000 samples, fixed seeds: coefficients within 4 standard errors. Planted error: variance
-// divided by n instead of n - p and not multiplied by SSR -> errors off by 1e3.
+// sigma = 1e-3, 4000 samples, fixed seeds: coefficients within 4 standard errors. Planted error: the factor
+// SSR / (n - p) left out -> standard errors a thousand times too large.
 TEST(CubicFit, KnowsItsStandardErrors) {
   const double truth[4] = {9.1e-4, -0.017, 0.057, 0.036};
   double chi2 = 0;

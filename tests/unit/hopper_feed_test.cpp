@@ -1,6 +1,7 @@
 // Requirement: the hopper feed starts with the asked number of spheres, replaces those that leave by cold
 // ones that never overlap, carries the rest when there is no room, and continues bit for bit from its state.
-// Planted errors seen to fail here: floor_at without falling spheres, backlog dropped, refill on in a batch.
+// Planted errors seen to fail here: newcomers blind to each other, a batch refilled,
+// counter not restored.
 #include <gtest/gtest.h>
 
 #include "dem/feed.h"

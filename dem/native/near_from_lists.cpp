@@ -1,0 +1,89 @@
+#include "dem/native/near_from_lists.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dem/scene/wall_distance.h"
+
+namespace granrad::native {
+namespace {
+
+/// nearest_image without its divisions for bodies that are nowhere near half a period apart.
+class Images {
+ public:
+  explicit Images(const Bed& bed) : bed_(bed) {
+    for (int a = 0; a < 3; ++a)
+      if (bed.periodic[a]) near_[a] = 0.49 * bed.box.size()[a];
+  }
+  Vec3 nearest(const Vec3& apart) const {
+    const bool unchanged =
+        std::abs(apart.x) < near_[0] && std::abs(apart.y) < near_[1] && std::abs(apart.z) < near_[2];
+    return unchanged ? apart : nearest_image(bed_, apart);
+  }
+
+ private:
+  const Bed& bed_;
+  double near_[3]{1e300, 1e300, 1e300};
+};
+
+std::vector<Vec3> wrapped_rows(const Bed& bed, const Rows& rows, int threads) {
+  std::vector<Vec3> wrapped(rows.count);
+#pragma omp parallel for num_threads(threads) schedule(static)
+  for (std::int64_t i = 0; i < rows.count; ++i) wrapped[i] = wrapped_into_box(bed, rows.position_of(i));
+  return wrapped;
+}
+
+}  // namespace
+
+std::vector<NearPair> near_particles(const Bed& bed, const Rows& rows, const ContactLists& lists,
+                                     double max_gap_m) {
+  const auto& shares = lists.shares();
+  const auto threads = static_cast<int>(shares.size());
+  const std::vector<Vec3> points = wrapped_rows(bed, rows, threads);
+  const Images images(bed);
+  std::vector<std::vector<NearPair>> parts(shares.size());
+#pragma omp parallel num_threads(threads)
+  {
+    const int t = omp_get_thread_num();
+    auto& part = parts[t];
+    part.resize(shares[t].own.near_count() + shares[t].cross.near_count());
+    std::size_t found = 0;
+    const auto collect = [&](const PairList& list, bool twins) {
+      for (std::int64_t k = 0; k < list.near_count(); ++k) {
+        const auto a = list.near_first(k), b = list.near_second(k);
+        const Vec3 apart = images.nearest(points[b] - points[a]);
+        const double squared = dot(apart, apart), reach = (rows.radius[a] + rows.radius[b]) + max_gap_m;
+        const auto i = rows.bed_index[a], j = rows.bed_index[b];
+        part[found] = {std::min(i, j), std::max(i, j), std::sqrt(squared)};
+        found += (squared <= reach * reach) & (reach >= 0) & !(twins && a > b);  // no branch to guess
+      }
+    };
+    collect(shares[t].own, false);
+    collect(shares[t].cross, true);
+    part.resize(found);
+  }
+  return sorted_by_rows(parts, bed.size());
+}
+
+std::vector<NearWall> near_walls(const Bed& bed, const ContactLists& lists, const Rows& rows,
+                                 const WallSurface& surface, double max_gap_m) {
+  std::vector<WallFace> faces;
+  for (const Wall& wall : bed.walls)
+    for (auto& face : faces_of(wall)) faces.push_back(std::move(face));
+  std::vector<NearWall> found;
+  for (const Share& share : lists.shares())
+    for (const auto& [row, facet] : share.walls.near()) {
+      const WallFace& face = faces[facet];
+      const Vec3 p = rows.position_of(row);
+      const double most = rows.radius[row] + max_gap_m;
+      if (!surface.stands(facet) || std::abs(dot(face.normal, p - face.vertices[0])) > most) continue;
+      const double distance = distance_to(face, p);
+      if (distance <= most) found.push_back({rows.bed_index[row], surface.wall(facet), distance});
+    }
+  keep_nearest(found);
+  return found;
+}
+
+}  // namespace granrad::native

@@ -1,0 +1,16 @@
+#pragma once
+#include "dem/native/contact_lists.h"
+#include "dem/near_pairs.h"
+
+namespace granrad::native {
+
+/// The pairs of near_pairs(bed, max_gap_m), bit for bit, from lists that are complete for that gap. `bed` is
+/// the one the rows hold.
+std::vector<NearPair> near_particles(const Bed& bed, const Rows& rows, const ContactLists& lists,
+                                     double max_gap_m);
+
+/// Its walls likewise. Not for periodic beds, where walls are met at images.
+std::vector<NearWall> near_walls(const Bed& bed, const ContactLists& lists, const Rows& rows,
+                                 const WallSurface& surface, double max_gap_m);
+
+}  // namespace granrad::native
