@@ -60,12 +60,14 @@ case ${1:-} in
     set_up
     build all
     say "testing"
+    export OMP_WAIT_POLICY=passive  # programs share the cores
     ctest --test-dir "$build" -LE long -j "$(nproc)" --output-on-failure --no-tests=error
     ;;
   test-long)
     set_up
     build all
     say "testing (long)"
+    export OMP_WAIT_POLICY=passive
     ctest --test-dir "$build" -L long -j "$(nproc)" --output-on-failure --no-tests=error
     ;;
   demo)

@@ -14,6 +14,7 @@
 #include "dem/scene/error.h"
 #include "dem/scene/number_rule.h"
 #include "dem/scene/problem_list.h"
+#include "dem/scene/shortest_numbers.h"
 #include "dem/scene/suggestion.h"
 #include "dem/scene/units.h"
 
@@ -206,7 +207,7 @@ fs::path TomlDocument::folder() const {
 std::string TomlDocument::effective_text() const {
   std::ostringstream out;
   out << toml::toml_formatter(state_->root) << '\n';
-  return out.str();
+  return with_shortest_numbers(out.str());
 }
 
 /// Follows "walls.y_min" or "polygon[2].role" from a table; null where it ends early.

@@ -1,6 +1,7 @@
 // Requirement: contacts conduct by 2 k sqrt(A) (Y/Y_real)^p, temperatures follow the same explicit scheme as
 // LIGGGHTS to 1e-6, and a step that is too long is refused with the largest allowed.
-// Planted: A without the factor 1/4 (fails every case here); heat given to one end only (fails conservation).
+// Planted, seen to fail: A without the factor 1/4 (five tests); heat given to one end only (conservation and
+// LIGGGHTS).
 #include "coupling/conduction.h"
 
 #include <gtest/gtest.h>

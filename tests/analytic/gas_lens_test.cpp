@@ -1,6 +1,7 @@
 // Requirement: the conductance of a gas lens is the integral of 2 pi k r / max(l, s), for pairs and walls,
-// apart, touching and overlapping. Planted: s for s/2 in the touching branch (fails the table by 1e-5); 4 R^2
-// d for 4 R^2 d^2 (NaN at contact).
+// apart, touching and overlapping.
+// Planted, seen to fail: s for s/2 in the touching branch (2e-6 off the table); the printed r_out of the
+// pair.
 #include "coupling/gas_lens.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
-// Requirement: a lone black sphere heats as dT/dt = A sigma (T_w^4 - T^4)/(m c) says, to first order in the
-// step. Planted: 2 pi r^2 for the area of a sphere (88 K too cold); trapezoidal instead of Euler (order 2).
+// Requirement: a lone black sphere heats as dT/dt = A sigma (T_w^4 - T^4)/(m c) says: to first order in the
+// radiation interval with heats of its start, to second order with heats of its middle.
+// Planted, seen to fail: midway temperatures a whole interval ahead (order 1).
 #include <gtest/gtest.h>
 
 #include <cmath>

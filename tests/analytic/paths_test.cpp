@@ -1,8 +1,7 @@
 // Requirement: heats by traced paths agree with closed forms of grey exchange within 4 standard errors, and
-// the standard errors are true. Planted, each seen to fail here: uniform instead of cosine emission from the
-// start (cube, 30 sigma; the plates are blind); factor (1 - eps) of the weight forgotten (plates 80 sigma);
-// absorbed at re-radiating walls (cube 400 sigma); standard error of one batch for that of the sum
-// (ErrorsAreTrue).
+// the standard errors are true. Planted, seen to fail: uniform instead of cosine emission (cube, cavity,
+// spheres, -4/9; the plates are blind to it); factor (1 - eps) of the weight forgotten (walks do not end);
+// absorption at re-radiating walls (cube); standard error of one batch for that of the sum (ErrorsAreTrue).
 #include <gtest/gtest.h>
 
 #include "coupling/radiosity.h"

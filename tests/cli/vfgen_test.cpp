@@ -166,6 +166,11 @@ TEST_F(Vfgen, ChecksThePrintedTableAndReportsItsBadRow) {
   expect_says(outcome, 2, "F_pp is negative from d* = 3.54");  // 0.43
 }
 
+TEST_F(Vfgen, FindsOurOwnTablesSound) {
+  for (const char* table : {"granrad_hard_spheres", "granrad_hard_spheres_cubic"})
+    expect_says(vfgen("-q check " + source_dir + "/data/correlations/" + table + ".toml"), 0, "sound");
+}
+
 TEST_F(Vfgen, GeneratesTablesThatPassTheirCheckAndKeepsWhatIsThere) {
   const auto config = write("generate.toml", R"(title = "test"
 [snapshots]

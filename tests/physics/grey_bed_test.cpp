@@ -55,8 +55,6 @@ double bias_percent(Case& c, ExchangeSource& areas, double emissivity, std::int6
   return 100 * (lumped.isothermal_wall_heat_W / exact.isothermal_wall_heat_W - 1);
 }
 
-// Planted: specular instead of diffuse reflection in the walk (bias 30 %); re-emission from a random point of
-// the sphere (bias 1 %: this is one radiosity per surface).
 TEST(GreyBed, OneRadiosityPerSurfaceOverstatesTheWallHeat) {
   Case c = channel(0.43, 0.4);
   auto areas = view_factors(300);
@@ -102,7 +100,6 @@ double mean_after_5_s(Case& c, ExchangeSource& source) {
   return mean_temperature_K(bed);
 }
 
-// Planted: emissivity of the walls forgotten (black): 355 K.
 TEST(GreyBedLong, StaticBedAfter5s) {
   Case c = channel(0.43, 0.4);
   PathSource few(walks(10000)), many(walks(100000));

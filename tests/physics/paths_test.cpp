@@ -1,7 +1,6 @@
 // Requirement: traced paths conserve energy exactly, leave an isothermal bed alone, obey reciprocity, and
-// give the same bits for any number of threads. Planted: heat given to the end only (energy sum); E_end of
-// the surface number after (isothermal); emission weight without the emissivity of the wall (reciprocity, 40
-// sigma).
+// give the same bits for any number of threads. Planted, seen to fail: heat given to the end only (four
+// tests); emissive power of the neighbouring surface number (isothermal, reciprocity).
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Requirement: heats by view factors respect the roles of walls, conserve energy, reuse the areas of a frozen
-// bed, and agree with traced paths where one radiosity per surface is exact (black surfaces). Planted:
-// adiabatic walls with their emissivity (gets heat); excluded walls kept (gets heat); variance for standard
-// error (agreement with paths).
+// bed, and agree with traced paths where one radiosity per surface is exact (black surfaces). Planted, seen
+// to fail: adiabatic walls with their emissivity; excluded walls kept; variance for standard error (agreement
+// with paths).
 #include "coupling/radiosity_source.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
-// Requirement: the ledger finds energy that was made or lost, keeps its sums exact over a long run, and
-// survives a restart to the bit.
+// Requirement: the ledger finds energy that was made or lost, keeps its sums exact over many steps, and
+// survives a restart to the bit. Planted, seen to fail: heat through the gas left out of the books
+// (ClosesOverManySteps).
 #include "coupling/energy_ledger.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +34,6 @@ Conductances chain(int count) {
   return g;
 }
 
-// Planted: heat of the gas left out of the books (defect 0.1); a step counted twice (defect 1e-4).
 TEST(EnergyLedger, ClosesOverManySteps) {
   const int count = 200;
   Bed bed = hot_walled_bed(count);

@@ -65,21 +65,21 @@ TEST(EngineNearPairs, AreThoseOfASearch) {
   for (const std::array<bool, 3>& periodic :
        {std::array{false, false, false}, {false, true, false}, {true, true, true}})
     for (const bool varied : {false, true})
-      for (const int threads : {1, 2, 3}) {
+      for (const int threads : varied ? std::vector{3} : std::vector{1, 2}) {
         SCOPED_TRACE(fmt::format("periodic {}{}{}, varied {}, {} threads", periodic[0], periodic[1],
                                  periodic[2], varied, threads));
         Bed bed = thrown(periodic, varied);
         NativeEngine engine = engine_for(bed, threads);
         std::size_t pairs = 0, walls = 0;
-        for (int k = 1; k <= 60; ++k) {
+        for (int k = 1; k <= 20; ++k) {
           engine.advance(bed, 37 * k * step);
           const auto got = engine.near_pairs(bed, 0.2 * radius);
           expect_same(got, near_pairs(bed, 0.2 * radius));
           pairs += got.particles.size(), walls += got.walls.size();
         }
         EXPECT_GT(pairs, 1000u);
-        if (!periodic[2]) EXPECT_GT(walls, 100u);
-        EXPECT_GE(engine.counts().list_reads, 59) << "lists are kept complete for the gap asked before";
+        EXPECT_TRUE(periodic[2] || walls > 100);
+        EXPECT_GE(engine.counts().list_reads, 19) << "lists are kept complete for the gap asked before";
       }
 }
 
