@@ -43,7 +43,29 @@ class LineGeometry {
   const LinePass& pass_;
 };
 
+/// Relative standard deviation.
+template <class Value>
+double relative_scatter(const std::vector<ChordSums>& samples, Value value) {
+  const double n = static_cast<double>(samples.size());
+  double mean = 0, squares = 0;
+  for (const auto& s : samples) mean += value(s) / n;
+  for (const auto& s : samples) squares += (value(s) - mean) * (value(s) - mean);
+  return n > 1 && mean > 0 ? std::sqrt(squares / (n - 1)) / mean : 1;
+}
+
 }  // namespace
+
+MeanChord mean_chord(const std::vector<ChordSums>& samples, double total_gaps, double swept) {
+  if (samples.empty() || total_gaps <= 0) return {};
+  const double n = static_cast<double>(samples.size());
+  double length = 0;
+  for (const auto& s : samples) length += s.length_m / n;
+  const double lengths = relative_scatter(samples, [](const ChordSums& s) { return s.length_m; });
+  const double gaps =
+      relative_scatter(samples, [](const ChordSums& s) { return static_cast<double>(s.gaps); });
+  const double value = length / (total_gaps / swept);
+  return {value, value * std::sqrt(lengths * lengths / n + gaps * gaps / swept)};
+}
 
 ChordSums chord_sums(LinePass& pass) {
   const LineGeometry geometry(pass);

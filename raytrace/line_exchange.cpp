@@ -24,7 +24,7 @@ constexpr std::size_t buffer_bytes_per_row = 2048;
 struct Sweep {
   SymmetricCounts counts;
   double unit_m2;  ///< X = unit S
-  double mean_chord_m;
+  MeanChord chord;
   std::int64_t leaked, ends;
 };
 
@@ -60,7 +60,7 @@ Sweep sweep(const LineScene& scene, const LineOptions& options, int directions) 
   const auto affordable = static_cast<int>(options.memory_limit_bytes / bytes_per_pair / (16 * surfaces));
   const int block = std::clamp(affordable, std::min(4, directions), directions);
   std::int64_t leaked = 0;
-  ChordSums chords;
+  std::vector<ChordSums> chords;
 #pragma omp parallel num_threads(threads) reduction(+ : leaked)
   {
     LinePass pass(scene);
@@ -82,7 +82,7 @@ Sweep sweep(const LineScene& scene, const LineOptions& options, int directions) 
 #pragma omp single
       {
         pass.aim(line_frame(options.seed, replicate, 0, directions));
-        chords += chord_sums(pass);
+        chords.push_back(chord_sums(pass));
       }
       counts.end_replicate();
     }
@@ -91,9 +91,11 @@ Sweep sweep(const LineScene& scene, const LineOptions& options, int directions) 
   SymmetricCounts result = counts.finish();
   std::int64_t ends = 0;
   for (auto c : result.count) ends += c;
-  return {std::move(result),
-          2 * scene.spacing * scene.spacing / (static_cast<double>(directions) * options.replicates),
-          chords.mean(), leaked, ends};
+  const double swept = static_cast<double>(directions) * options.replicates;
+  const auto row = result.pattern.row_begin.begin() + scene.open_surface;
+  const bool closed = row[0] == row[1];
+  return {std::move(result), 2 * scene.spacing * scene.spacing / swept,
+          closed ? mean_chord(chords, 0.5 * static_cast<double>(ends), swept) : MeanChord{}, leaked, ends};
 }
 
 /// Standard error of the particles' sums over walls and surroundings, rms relative to their mean.
@@ -132,7 +134,8 @@ HitCounts sweep_view_factors(const Enclosure& enclosure, const LineOptions& opti
   HitCounts hits;
   hits.area_m2 = surface_areas(enclosure);
   hits.leaked = s.leaked;
-  hits.mean_chord_m = s.mean_chord_m;
+  hits.mean_chord_m = s.chord.value_m;
+  hits.mean_chord_error_m = s.chord.standard_error_m;
   hits.launched.assign(n, 0);
   hits.variance_factor.assign(n, 1);
   hits.pattern = counts.pattern;

@@ -11,7 +11,7 @@ struct PathOptions {
   std::int64_t walks = 10000;  ///< per update, >= 2 path_batches
   std::uint64_t seed = 1;
   /// Share of the walks that start on isothermal and open walls, the rest on particles. At 0 or 1 the
-  /// exchange within the kind that starts none is left out. 0.75: a third of the cost of even starts for the
+  /// exchange within the kind that starts none is left out. 0.75: a sixth of the cost of even starts for the
   /// wall heat of a dense bed.
   double wall_share = 0.75;
   double weighted_below = 0.7;  ///< smallest emissivity below which walks are weighted instead of absorbed

@@ -3,6 +3,7 @@
 // of one thread. Usage: heat_bench [--quick] FOLDER
 #include <fmt/format.h>
 #include <fmt/os.h>
+#include <omp.h>
 
 #include <Eigen/Dense>
 #include <cmath>
@@ -201,6 +202,7 @@ void write_svg(const std::filesystem::path& file, const std::vector<Row>& rows) 
 }  // namespace
 
 int main(int argc, char** argv) {
+  omp_set_num_threads(1);
   const bool quick = argc > 1 && std::string(argv[1]) == "--quick";
   const std::filesystem::path folder = argc > 1 ? argv[argc - 1] : ".";
   const double solid_fraction = 0.48;  // N = 3581: the paper's largest bed
