@@ -108,7 +108,7 @@ Hdf5Writer::Hdf5Writer(fs::path target) {
   fs::path temporary = target;
   temporary += ".tmp";
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18);  // checksums of metadata
+  H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);  // checksums of metadata, chunk indices too
   Handle file(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, without_clock(H5P_FILE_CREATE), access), H5Fclose);
   if (!file.valid()) throw IoError(fmt::format("{}: cannot be created", temporary.string()));
   impl_.reset(new Impl{std::move(target), std::move(temporary), std::move(file)});

@@ -63,6 +63,19 @@ inline std::optional<double> loop_seconds(const std::string& command) {
   return pclose(pipe) == 0 ? seconds : std::nullopt;
 }
 
+/// Million particle-steps per second of a peer (liggghts or lmp) on a stored deck, which reads bed12k.data
+/// beside it.
+inline std::optional<double> run_stored(const std::string& peer, const std::filesystem::path& deck,
+                                        const std::filesystem::path& folder, const Bed& bed, int steps) {
+  const std::string program = peer == "lammps" ? "lmp" : peer;
+  if (!installed(program)) return {};
+  const auto seconds = loop_seconds(
+      fmt::format("cd '{}' && {} -in '{}' -log none -var data '{}' -var nrun {}", folder.string(), program,
+                  deck.string(), (deck.parent_path() / "bed12k.data").string(), steps));
+  if (!seconds) return {};
+  return double(bed.size()) * steps / *seconds * 1e-6;
+}
+
 /// Million particle-steps per second of LIGGGHTS, or nothing where it is not installed or fails.
 inline std::optional<double> run_liggghts(const std::filesystem::path& folder, const Bed& bed,
                                           const Vec3& gravity, int warm_up, int steps) {

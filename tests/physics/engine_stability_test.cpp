@@ -310,17 +310,31 @@ TEST(EngineStability, heap_comes_to_rest) {
   EXPECT_LT(median_speed(bed), 1e-8);
 }
 
+/// Nothing brakes rolling: a sphere that rolls on for ever drags its whole neighbourhood along at some 1e-11
+/// m/s. Stopped a few times, rollers come to lie in hollows.
+void stop_rollers(Engine& engine, Bed& bed) {
+  for (int k = 0; k < 20; ++k) {
+    for (auto& v : bed.velocity_m_s) v = {};
+    for (auto& w : bed.angular_velocity_rad_s) w = {};
+    engine.advance(bed, bed.time_s + 0.05);
+  }
+}
+
+// All particles, to round-off: contacts at rest neither gain energy nor creep.
 TEST(EngineStabilityLong, heap_stays_where_it_is) {
   Bed bed = heap();
   const auto engine = make_native_engine(bed, {0, 0, -g}, 1e-5);
-  engine->advance(bed, 2.0);
+  engine->advance(bed, 1.0);
+  stop_rollers(*engine, bed);
   const Bed rested = bed;
-  engine->advance(bed, 10.0);
-  std::vector<double> crept;
-  for (const auto i : held(bed)) crept.push_back(norm(bed.position_m[i] - rested.position_m[i]));
-  std::nth_element(crept.begin(), crept.begin() + crept.size() / 2, crept.end());
-  EXPECT_LT(crept[crept.size() / 2], 1e-6 * radius);
-  EXPECT_LT(median_speed(bed), 1e-12);
+  engine->advance(bed, bed.time_s + 10.0);
+  double crept = 0, fastest = 0;
+  for (std::size_t i = 0; i < bed.size(); ++i) {
+    crept = std::max(crept, norm(bed.position_m[i] - rested.position_m[i]));
+    fastest = std::max(fastest, norm(bed.velocity_m_s[i]));
+  }
+  EXPECT_LT(crept, 1e-6 * radius);
+  EXPECT_LT(fastest, 1e-12);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "dem/scene/snapshot.h"
 #include "raytrace/view_factor_file.h"
 #include "tests/enclosures.h"
+#include "tests/temporary_folder.h"
 
 namespace granrad {
 namespace {
@@ -131,10 +132,10 @@ TEST(ViewFactorFile, GivesBackWhatWasWritten) {
   content.seed = 42;
   ClosureReport report;
   content.closed = close(one_way_estimate(content.counts), content.closure, report);
-  const auto file = std::filesystem::temp_directory_path() / "granrad_view_factor_file_test.h5";
+  const TemporaryFolder folder;
+  const auto file = folder / "vf.h5";
   write_view_factors(file, content);
   const ViewFactorFile back = read_view_factors(file);
-  std::filesystem::remove(file);
   EXPECT_EQ(back.counts.hits, content.counts.hits);
   EXPECT_EQ(back.counts.pattern.row_begin, content.counts.pattern.row_begin);
   EXPECT_EQ(back.counts.area_m2, content.counts.area_m2);

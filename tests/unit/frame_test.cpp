@@ -11,6 +11,7 @@
 #include "dem/scene/hdf5_file.h"
 #include "dem/scene/random.h"
 #include "dem/scene/snapshot.h"
+#include "tests/temporary_folder.h"
 
 namespace granrad {
 namespace {
@@ -19,9 +20,7 @@ namespace fs = std::filesystem;
 
 class Frame : public testing::Test {
  protected:
-  Frame() : folder_(fs::temp_directory_path() / "granrad_frame_test") { fs::create_directories(folder_); }
-  ~Frame() override { fs::remove_all(folder_); }
-  fs::path folder_;
+  TemporaryFolder folder_;
 };
 
 Bed random_bed(std::size_t n) {
@@ -198,8 +197,8 @@ TEST_F(Frame, NothingIsWrittenOfAStateThatIsNotFinite) {
   Bed bed = random_bed(3);
   bed.temperature_K[1] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(write_frame(folder_ / "f.hdf", bed, {}), NumericalError);
-  EXPECT_TRUE(fs::is_empty(folder_));
-  EXPECT_THROW(write_frame(folder_ / "missing" / "f.hdf", random_bed(3), {}), IoError);
+  EXPECT_TRUE(fs::is_empty(folder_.path()));
+  EXPECT_THROW(write_frame(folder_.path() / "missing" / "f.hdf", random_bed(3), {}), IoError);
 }
 
 TEST_F(Frame, ACrashedWriteLeavesTheOldFrame) {

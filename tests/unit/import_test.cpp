@@ -9,6 +9,7 @@
 #include "dem/scene/error.h"
 #include "dem/scene/import_stl.h"
 #include "dem/scene/snapshot.h"
+#include "tests/temporary_folder.h"
 
 namespace granrad {
 namespace {
@@ -17,12 +18,9 @@ namespace fs = std::filesystem;
 
 class Import : public testing::Test {
  protected:
-  Import() : folder_(fs::temp_directory_path() / "granrad_import_test") { fs::create_directories(folder_); }
-  ~Import() override { fs::remove_all(folder_); }
 
   fs::path write(const std::string& text, const std::string& name = "file") const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return folder_ / name;
+    return folder_.write(name, text);
   }
   Bed read(const std::string& text, double radius_m = 0) const {
     return read_snapshot(write(text), radius_m).bed;
@@ -42,7 +40,7 @@ class Import : public testing::Test {
     const auto problems = problems_of(text, radius_m);
     return problems.size() == 1 ? problems[0] : "not exactly one problem";
   }
-  fs::path folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(Import, CsvColumnsComeInAnyOrder) {

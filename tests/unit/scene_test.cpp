@@ -9,6 +9,7 @@
 
 #include "dem/scene/error.h"
 #include "dem/scene/snapshot.h"
+#include "tests/temporary_folder.h"
 
 namespace granrad {
 namespace {
@@ -47,21 +48,6 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   EXPECT_NE(at, text.npos) << what;
   return text.replace(at, what.size(), by);
 }
-
-class TemporaryFolder {
- public:
-  TemporaryFolder() : path_(fs::temp_directory_path() / "granrad_scene_test") {
-    fs::create_directories(path_);
-  }
-  ~TemporaryFolder() { fs::remove_all(path_); }
-  fs::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name) << text;
-    return path_ / name;
-  }
-
- private:
-  fs::path path_;
-};
 
 TEST(Scene, PlugIsCompleteWithDefaults) {
   const Scene s = parse(plug_scene);

@@ -8,6 +8,7 @@
 
 #include "dem/scene/error.h"
 #include "dem/scene/suggestion.h"
+#include "tests/temporary_folder.h"
 
 namespace granrad {
 namespace {
@@ -204,7 +205,8 @@ TEST(TomlReader, OverridesReplaceMergeAndAreLocated) {
 }
 
 TEST(TomlReader, KeysFromAnotherFileKeepTheirPlace) {
-  const auto folder = std::filesystem::temp_directory_path() / "granrad_toml_reader_test";
+  const TemporaryFolder own_folder;
+  const auto& folder = own_folder.path();
   std::filesystem::create_directories(folder / "materials");
   std::ofstream(folder / "materials/m.toml") << "# comment\ndensity = -1\nfriction = 0.4\nhardness = 3\n";
   std::ofstream(folder / "s.toml") << "[material]\nfile = 'materials/m.toml'\nfriction = 0.5\n";
@@ -218,7 +220,6 @@ TEST(TomlReader, KeysFromAnotherFileKeepTheirPlace) {
   const std::string file = (folder / "materials/m.toml").string();
   EXPECT_EQ(problems[0], file + ":2:11: material.density = -1 (must be >= 0)");
   EXPECT_TRUE(problems[1].starts_with(file + ":4:1: unknown key 'hardness' in [material]")) << problems[1];
-  std::filesystem::remove_all(folder);
 }
 
 TEST(TomlReader, ProblemsOfOthersAreLocatedSortedAndNotRepeated) {
