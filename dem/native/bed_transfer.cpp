@@ -165,6 +165,7 @@ void BedTransfer::store(const Rows& rows, const std::vector<Memory>& memories, i
     const Vec3 s = m.displacement + Vec3{};  // no negative zeros: equal states have equal bits
     bed.contacts[begin[m.first + 1]++] = {bed.id[m.first], m.second >= 0 ? bed.id[m.second] : m.second, s};
   }
+#pragma omp parallel for num_threads(threads) schedule(static)
   for (std::int64_t i = 0; i < rows.count; ++i)
     std::sort(bed.contacts.begin() + begin[i], bed.contacts.begin() + begin[i + 1],
               [](const ContactMemory& a, const ContactMemory& b) { return a.second < b.second; });

@@ -35,19 +35,24 @@ double ContactLists::margin_of(double speed, std::int64_t steps) const {
 }
 
 void ContactLists::check_speeds(const Rows& rows, const Bed& bed) const {
+  std::int64_t tunnels = rows.count;
+#pragma omp parallel for num_threads(static_cast <int>(shares_.size())) schedule(static) \
+    reduction(min                                                                        \
+              : tunnels)
   for (std::int64_t i = 0; i < rows.count; ++i) {
     const Vec3 v = rows.velocity_of(i), p = rows.position_of(i);
-    const double speed = largest_component(v), limit = fastest_step * rows.radius[i] / step_s_;
-    if (is_finite(v) && is_finite(p) && speed <= limit) continue;
-    const double advised = 0.5 * fastest_step * rows.radius[i] / speed;
-    throw NumericalError(
-        fmt::format("particle {} at ({:.6g}, {:.6g}, {:.6g}) m moves at {:.4g} m/s, more than {} of its "
-                    "radius per step of "
-                    "{:.3g} s (it would tunnel) try a step of {:.2g} s, a higher Young's modulus, or "
-                    "starting positions with "
-                    "less overlap",
-                    bed.id[rows.bed_index[i]], p.x, p.y, p.z, norm(v), fastest_step, step_s_, advised));
+    const bool sound =
+        is_finite(v) && is_finite(p) && largest_component(v) <= fastest_step * rows.radius[i] / step_s_;
+    if (!sound) tunnels = std::min(tunnels, i);
   }
+  if (tunnels == rows.count) return;
+  const Vec3 v = rows.velocity_of(tunnels), p = rows.position_of(tunnels);
+  const double advised = 0.5 * fastest_step * rows.radius[tunnels] / largest_component(v);
+  throw NumericalError(
+      fmt::format("particle {} at ({:.6g}, {:.6g}, {:.6g}) m moves at {:.4g} m/s, more than {} of its "
+                  "radius per step of {:.3g} s (it would tunnel) try a step of {:.2g} s, a higher Young's "
+                  "modulus, or starting positions with less overlap",
+                  bed.id[rows.bed_index[tunnels]], p.x, p.y, p.z, norm(v), fastest_step, step_s_, advised));
 }
 
 ContactLists::Motion ContactLists::measure(const Rows& rows, std::int64_t steps) const {

@@ -10,6 +10,7 @@
 #include "dem/native/bed_transfer.h"
 #include "dem/native/model.h"
 #include "dem/native/near_from_lists.h"
+#include "dem/native/step_barrier.h"
 #include "dem/scene/error.h"
 
 namespace granrad::native {
@@ -104,6 +105,7 @@ std::int64_t NativeEngine::Impl::run(std::int64_t steps, bool finishes, bool& li
   std::int64_t done = 0;
   limit_broken = false;
   model.move.kick = rows.uniform ? model.kick_row.data() : rows.kick.data();
+  StepBarrier barrier(static_cast<int>(shares.size()));
 #pragma omp parallel num_threads(static_cast <int>(shares.size()))
   {
     Share& share = shares[omp_get_thread_num()];
@@ -115,10 +117,10 @@ std::int64_t NativeEngine::Impl::run(std::int64_t steps, bool finishes, bool& li
           {deepest, kernels.pair_contacts(view, share.own.view(), model.constants),
            kernels.pair_contacts_first(view, share.cross.view(), model.constants),
            share.walls.add_forces(kernels, *surface, rows, *periods, model.constants, transfer.materials())});
-#pragma omp barrier
+      barrier.wait();
       share.too_fast =
           kernels.move(view, share.range.begin, share.range.end, model.move, finishes && k + 1 == steps);
-#pragma omp barrier
+      barrier.wait();
       for (const auto& s : shares) stop |= s.too_fast;
 #pragma omp master
       done = k + 1, limit_broken = stop;
