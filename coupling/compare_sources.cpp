@@ -104,8 +104,6 @@ std::string source_label(const RadiationSettings& settings) {
   std::string label = to_string(settings.kind);
   if (settings.kind == RadiationKind::correlation)
     label = fmt::format("{} {}", label, settings.table.stem().string());
-  if (settings.kind == RadiationKind::lines && settings.order > 0)
-    label += fmt::format(" order {}", settings.order);
   if (settings.closure == Closure::row_sum) label += " row_sum";
   return label;
 }

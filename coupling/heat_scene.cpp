@@ -110,15 +110,16 @@ RadiationSettings read_radiation(TomlTable table, const Scene& scene, const std:
   settings.closure = table.choice("closure", {"reciprocal", "row_sum"}, "reciprocal") == "row_sum"
                          ? Closure::row_sum
                          : Closure::reciprocal;
-  settings.order = static_cast<int>(table.integer("order", 0, 3, 0));
   settings.seed = static_cast<std::uint64_t>(table.integer("seed", 0, 1LL << 62, 1));
 
   if (table.has("table") && settings.kind != RadiationKind::correlation)
     table.problem("table",
                   fmt::format("is not used by source = {}; leave it out or set source = \"correlation\"",
                               to_string(settings.kind)));
-  if (settings.order != 0 && settings.kind != RadiationKind::lines)
-    table.problem("order", "only source = \"lines\" resolves the radiosity over a surface; leave it out");
+  if (table.integer("order", 0, 3, 0) != 0)
+    table.problem("order",
+                  "must be 0 (radiosities resolved over a surface are not built) for grey surfaces use "
+                  "source = \"paths\", which is exact");
   if (table.has("closure") && (paths || settings.kind == RadiationKind::none))
     table.problem("closure",
                   fmt::format("nothing is closed with source = {}; leave it out", to_string(settings.kind)));

@@ -22,7 +22,6 @@ struct RadiationSettings {
   double rays = 0;              ///< paths: walks per update; embree, lines: rays per particle
   double every_s = 0.01;
   Closure closure = Closure::reciprocal;
-  int order = 0;  ///< lines: order of the spherical harmonics of the radiosity of each surface
   std::uint64_t seed = 1;
 };
 

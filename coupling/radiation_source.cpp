@@ -108,8 +108,8 @@ std::string describe(const RadiationSettings& settings) {
     case RadiationKind::embree:
       return fmt::format("view factors by Embree, {:.0f} rays per particle, {}", settings.rays, closure);
     case RadiationKind::lines:
-      return fmt::format("view factors by global lines, {:.0f} rays per particle, order {}, {}",
-                         settings.rays, settings.order, closure);
+      return fmt::format("view factors by global lines, {:.0f} rays per particle, {}", settings.rays,
+                         closure);
     case RadiationKind::correlation:
       return fmt::format("correlation table {}, {}", settings.table.filename().string(), closure);
   }

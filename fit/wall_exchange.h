@@ -22,8 +22,7 @@ double extinction_1_m(double solid_fraction, double diameter_m);
 /// Against traced hard-sphere beds in the 10 x 4 x 50 mm channel, d = 0.8 mm, from a large wall to its
 /// neighbour | to the opposite wall: solid fraction 0.07: 0.092 for 0.100 | 0.293 for 0.273; 0.25: 0.033 for
 /// 0.045 | 0.027 for 0.018; 0.43: 0.015 for 0.024 | 0.0007 for 0.0006. Spheres leave a gap along walls, which
-/// one extinction coefficient does not know; what is missing, at most 2 % of a wall's view, is spread by the
-/// closure.
+/// one extinction coefficient does not know; what is missing is spread by the closure.
 WallExchange wall_exchange(const Enclosure& enclosure, double extinction_1_m);
 
 }  // namespace granrad
