@@ -244,9 +244,18 @@ int run(const std::filesystem::path& folder, bool quick) {
 }  // namespace granrad::bench
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    fmt::print(stderr, "usage: dem_bench FOLDER [--quick]\n");
+  bool quick = false;
+  std::string folder;
+  for (int k = 1; k < argc; ++k) {
+    const std::string_view word = argv[k];
+    if (word == "--quick")
+      quick = true;
+    else
+      folder = word;
+  }
+  if (folder.empty()) {
+    fmt::print(stderr, "usage: dem_bench [--quick] FOLDER\n");
     return 2;
   }
-  return granrad::bench::run(argv[1], argc > 2 && std::string_view(argv[2]) == "--quick");
+  return granrad::bench::run(folder, quick);
 }
