@@ -47,7 +47,6 @@ const std::map<std::string, std::vector<std::string>> arrows = {
     {"dem/", {"dem/"}},
     {"raytrace/", {"raytrace/", "dem/scene/", "dem/near_pairs.h"}},
     {"fit/", {"fit/", "raytrace/", "dem/scene/", "dem/near_pairs.h", "dem/packing.h"}},
-    {"fit/generate", {"fit/", "raytrace/", "dem/"}},  // the only part of vfgen that runs a flow
     {"coupling/", {"coupling/", "fit/", "raytrace/", "dem/"}},
 };
 
