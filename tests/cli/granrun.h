@@ -10,25 +10,15 @@
 #include <string>
 #include <vector>
 
+#include "tests/temporary_folder.h"
+
 namespace granrad::cli {
 
 namespace fs = std::filesystem;
 
 /// A folder of its own for each test, gone afterwards.
-class Scratch {
- public:
-  Scratch() {
-    std::string name = (fs::temp_directory_path() / "granrad_cli_XXXXXX").string();
-    root = mkdtemp(name.data());
-  }
-  ~Scratch() { fs::remove_all(root); }
-  Scratch(const Scratch&) = delete;
-
-  fs::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(root / name) << text;
-    return root / name;
-  }
-  fs::path root;
+struct Scratch : TemporaryFolder {
+  fs::path root = path();
 };
 
 inline std::string content(const fs::path& file) {
