@@ -12,8 +12,6 @@ namespace granrad {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double rayleigh_fraction = 0.3;
-constexpr double hertz_fraction = 0.1;
 constexpr double radiation_fraction = 0.1;   // forward Euler, first order: 0.1 of the time constant
 constexpr double normal_deviates = 4;        // of the transverse velocity, both partners
 constexpr double smallest_speed_m_s = 1e-3;  // a bed at rest still settles
@@ -80,7 +78,8 @@ StepLimits step_limits(const Case& c, const Bed& bed) {
       limits.hertz_time_s =
           std::min(limits.hertz_time_s, hertz_time_s(material, radius, limits.impact_speed_m_s));
     }
-    limits.dem_s = std::min(rayleigh_fraction * limits.rayleigh_time_s, hertz_fraction * limits.hertz_time_s);
+    limits.dem_s = std::min(StepLimit::rayleigh_share * limits.rayleigh_time_s,
+                            StepLimit::hertz_share * limits.hertz_time_s);
     const double speed = largest_speed_m_s(scene, bed);
     if (speed > 0) limits.motion_s = 2 * radius / speed;
   }

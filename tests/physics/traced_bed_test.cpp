@@ -54,21 +54,22 @@ TEST(RealBed, ClosesReciprocally) {
   const ExchangeAreas x = close(one_way_estimate(real_counts()), Closure::reciprocal, report);
   std::printf("closure defect %.3e, reciprocity defect %.3e, correction %.3e, %d sweeps\n",
               report.closure_defect, report.reciprocity_defect, report.largest_correction, report.sweeps);
-  double worst_row = 0, worst_heat = 0;
+  double worst_row = 0;
+  std::vector<double> absorbed(x.area_m2.size());
   for (std::size_t i = 0; i + 1 < x.area_m2.size(); ++i) {
     worst_row = std::max(worst_row, std::abs(row_sum(x, i) / x.area_m2[i] - 1));
-    double heat = 0;
     for (auto k = x.pattern.row_begin[i]; k < x.pattern.row_begin[i + 1]; ++k) {
       const auto j = static_cast<std::size_t>(x.pattern.column[static_cast<std::size_t>(k)]);
       const double v = x.value[static_cast<std::size_t>(k)];
       ASSERT_GE(v, 0);
       ASSERT_EQ(v, value(x, j, i)) << i << ' ' << j;
-      heat += v * (1.0 - 1.0);
+      absorbed[j] += v;
     }
-    worst_heat = std::max(worst_heat, std::abs(heat));
   }
   EXPECT_LE(worst_row, 1e-12);
-  EXPECT_EQ(worst_heat, 0);
+  // At one temperature each surface absorbs what it emits (the row-sum closure misses this by percents).
+  for (std::size_t i = 0; i + 1 < x.area_m2.size(); ++i)
+    EXPECT_NEAR(absorbed[i] / x.area_m2[i], 1, 1e-12) << i;
 }
 
 // Planted: variance divided by 2 in one_way_estimate gives 1.85, 1.89 and 2.19.
