@@ -11,9 +11,10 @@
 namespace granrad::native {
 namespace {
 /// Half of the near list's skin and of the tight list's smallest margin, in radii: the measured optimum is
-/// flat.
-constexpr double half_skin = 0.25, smallest_margin = 0.01, widest_half_skin = 0.6;
-const double diagonal = 1.0001 * std::sqrt(3.0);  ///< speed limits hold for each direction alone
+/// flat. A row in fast flight has a wider skin of its own, so that a few do not end the list of all.
+constexpr double half_skin = 0.25, smallest_margin = 0.01, widest_half_skin = 0.6, widest_own_skin = 4;
+constexpr double skin_lives = 4, slow_share = 0.9;  ///< tight lists a skin is made for; rows that share one
+const double diagonal = 1.0001 * std::sqrt(3.0);    ///< speed limits hold for each direction alone
 double largest_component(const Vec3& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
@@ -55,41 +56,67 @@ void ContactLists::check_speeds(const Rows& rows, const Bed& bed) const {
                   bed.id[rows.bed_index[tunnels]], p.x, p.y, p.z, norm(v), fastest_step, step_s_, advised));
 }
 
-ContactLists::Motion ContactLists::measure(const Rows& rows, std::int64_t steps) const {
-  Motion all;
-  const Vec3 moved = drift();
-  const double mean_reach = norm(mean_velocity_) * step_s_ * double(steps);
-  double fastest = 0, travelled = 0, near_need = 0, wall_need = 0;
-#pragma omp parallel for num_threads(static_cast <int>(shares_.size())) schedule(static) \
-    reduction(max                                                                        \
-              : fastest, travelled, near_need, wall_need)
-  for (std::int64_t i = 0; i < rows.count; ++i) {
-    const Vec3 p = rows.position_of(i);
-    const double speed = largest_component(rows.velocity_of(i) - mean_velocity_),
-                 margin = margin_of(speed, steps);
-    fastest = std::max(fastest, speed);
-    if (stale_) continue;
-    const Vec3 a{near_origin_[3 * i], near_origin_[3 * i + 1], near_origin_[3 * i + 2]};
-    const double way = norm(p - a - moved);
-    travelled = std::max(travelled, way);
-    near_need = std::max(near_need, way + margin);
-    if (walls_stale_) continue;
-    const Vec3 b{wall_origin_[3 * i], wall_origin_[3 * i + 1], wall_origin_[3 * i + 2]};
-    wall_need = std::max(wall_need, norm(p - b) + margin + mean_reach);
-  }
-  all.fastest = fastest, all.travelled = travelled, all.near_need = near_need, all.wall_need = wall_need;
-  return all;
+/// How far row i may still move from where it is: beside the mean within the near list, in all within the
+/// wall list.
+ContactLists::Room ContactLists::room_of(const Rows& rows, std::int64_t i, const Vec3& moved) const {
+  const Vec3 p = rows.position_of(i);
+  const auto way = [&](const std::vector<double>& from, const Vec3& beside) {
+    return norm(p - Vec3{from[3 * i], from[3 * i + 1], from[3 * i + 2]} - beside);
+  };
+  return {skins_.half_m[i] - way(near_origin_, moved),
+          walls_stale_ ? 1e300 : skins_.half_m[i] - way(wall_origin_, {})};
 }
 
+ContactLists::Room ContactLists::measure(const Rows& rows, std::int64_t steps) const {
+  if (stale_) return {-1, -1};
+  const Vec3 moved = drift();
+  const double mean_reach = norm(mean_velocity_) * step_s_ * double(steps);
+  double near = 1e300, walls = 1e300;
+#pragma omp parallel for num_threads(static_cast <int>(shares_.size())) schedule(static) \
+    reduction(min                                                                        \
+              : near, walls)
+  for (std::int64_t i = 0; i < rows.count; ++i) {
+    const double margin = margin_of(largest_component(rows.velocity_of(i) - mean_velocity_), steps);
+    const Room room = room_of(rows, i, moved);
+    near = std::min(near, room.near_m - margin);
+    walls = std::min(walls, room.walls_m - margin - mean_reach);
+  }
+  return {near, walls};
+}
+
+/// A velocity may change by the spare speed and by what `closing_` expects, as far as the near and wall lists
+/// hold and the row does not tunnel.
 void ContactLists::set_reaches(Rows& rows, std::int64_t steps) {
+  rows.reference.resize(4 * rows.count);
+  const Vec3 moved = drift();
+  const double life_s = step_s_ * double(steps), mean_reach = norm(mean_velocity_) * life_s;
 #pragma omp parallel for num_threads(static_cast <int>(shares_.size())) schedule(static)
   for (std::int64_t i = 0; i < rows.count; ++i) {
     const Vec3 v = rows.velocity_of(i);
-    const double speed = largest_component(v - mean_velocity_);
-    const double room = fastest_step * rows.radius[i] / step_s_ - largest_component(mean_velocity_);
-    rows.position[4 * i + 3] = rows.radius[i] + margin_of(speed, steps);
-    rows.velocity[8 * i + 3] = std::max(0.0, std::min(speed + spare_speed_m_s_, std::max(room, speed)));
+    const Room room = room_of(rows, i, moved);
+    const double listed = std::min(room.near_m, room.walls_m - mean_reach) / (diagonal * life_s) -
+                          largest_component(v - mean_velocity_);
+    const double sound = fastest_step * rows.radius[i] / step_s_ - largest_component(v);
+    const double change = std::max(0.0, std::min({spare_speed_m_s_ + closing_[i], listed, sound}));
+    for (int a = 0; a < 3; ++a) rows.reference[4 * i + a] = v[a];
+    rows.reference[4 * i + 3] = change;
+    rows.position[4 * i + 3] = rows.radius[i] + diagonal * change * life_s;
   }
+}
+
+/// Sets the reaches, with what each row's partners and walls may soon do to its velocity.
+void ContactLists::anticipate(Rows& rows, Model& model, const Periods& periods, const WallSurface& surface,
+                              std::int64_t steps) {
+  model.constants.life_s = step_s_ * double(steps);
+  set_reaches(rows, steps);
+#pragma omp parallel num_threads(static_cast <int>(shares_.size()))
+  {
+    Share& share = shares_[omp_get_thread_num()];
+    share.own.find_closing_speeds(kernels_, rows.view(), model.constants, false, closing_);
+    share.cross.find_closing_speeds(kernels_, rows.view(), model.constants, true, closing_);
+    share.walls.find_closing_speeds(surface, rows, periods, model.constants.life_s, closing_);
+  }
+  set_reaches(rows, steps);
 }
 
 void ContactLists::sort_rows(Rows& rows, const Periods& periods, const Bed& bed, double cell_m) {
@@ -101,7 +128,7 @@ void ContactLists::sort_rows(Rows& rows, const Periods& periods, const Bed& bed,
       std::copy_n(column.begin() + width * std::int64_t(order[i]), width, sorted.begin() + width * i);
     column.swap(sorted);
   };
-  permute(rows.position, 4), permute(rows.velocity, 8), permute(rows.bed_index, 1);
+  permute(rows.position, 4), permute(rows.velocity, 8), permute(rows.bed_index, 1), permute(skins_.half_m, 1);
   if (!rows.uniform)
     permute(rows.kick, 8), permute(rows.radius, 1), permute(rows.mass, 1), permute(rows.material, 1);
   for (std::int64_t i = 0; i < rows.count; ++i) rows.row_of[rows.bed_index[i]] = static_cast<std::int32_t>(i);
@@ -110,72 +137,25 @@ void ContactLists::sort_rows(Rows& rows, const Periods& periods, const Bed& bed,
     for (int a = 0; a < 3; ++a) near_origin_[3 * i + a] = rows.position[4 * i + a];
 }
 
-void ContactLists::find_near(const Rows& rows, const Periods& periods) {
-  const std::int64_t n = rows.count;
-  Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-  for (std::int64_t i = 0; i < n; ++i)
-    for (int a = 0; a < 3; ++a)
-      low[a] = std::min(low[a], rows.position[4 * i + a]),
-      high[a] = std::max(high[a], rows.position[4 * i + a]);
-  double extent = 0;
-  for (int a = 0; a < 3; ++a)
-    extent = std::max(extent, periods.length[a] > 0 ? periods.length[a] : high[a] - low[a]);
-  const double rounding = 1e-6 * extent;  // of single precision in the search
-  std::vector<float> coordinate[4];
-  for (auto& c : coordinate) c.resize(n + 16);
-  for (std::int64_t i = 0; i < n; ++i) {
-    for (int a = 0; a < 3; ++a) {
-      double x = rows.position[4 * i + a] - low[a];
-      if (periods.length[a] > 0) x -= periods.length[a] * std::floor(x * periods.inverse[a]);
-      coordinate[a][i] = static_cast<float>(x);
-    }
-    coordinate[3][i] = static_cast<float>(rows.radius[i] + half_skin_m_ + 0.5 * listed_gap_m_ + rounding);
+void ContactLists::choose_skins(const Rows& rows, double largest_radius, std::int64_t steps) {
+  std::vector<double> speed(rows.count), sorted;
+  for (std::int64_t i = 0; i < rows.count; ++i)
+    speed[i] = largest_component(rows.velocity_of(i) - mean_velocity_);
+  sorted = speed;
+  double slow = 0;
+  if (!sorted.empty()) {
+    const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(slow_share * double(rows.count - 1));
+    std::nth_element(sorted.begin(), at, sorted.end());
+    slow = *at;
   }
-  float period[3], inverse[3];
-  for (int a = 0; a < 3; ++a)
-    period[a] = static_cast<float>(periods.length[a]), inverse[a] = static_cast<float>(periods.inverse[a]);
-  const auto threads = static_cast<int>(shares_.size());
-  const auto owner_of = [&](std::int64_t row) {
-    auto t = static_cast<int>(row * threads / std::max<std::int64_t>(n, 1));
-    while (row >= shares_[t].range.end) ++t;
-    while (row < shares_[t].range.begin) --t;
-    return t;
+  const auto skin = [&](double v, double least, double most) {
+    return std::clamp(skin_lives * margin_of(v, steps), least, std::max(least, most));
   };
-  for (int t = 0; t < threads; ++t) shares_[t].range = {n * t / threads, n * (t + 1) / threads};
-#pragma omp parallel num_threads(threads)
-  {
-    const int t = omp_get_thread_num();
-    Share& share = shares_[t];
-    share.own.clear_near(), share.cross.clear_near();
-    for (auto& box : share.outbox) box.clear();
-    std::vector<std::int32_t> found(1024);
-    for (auto i = share.range.begin; i < share.range.end; ++i) {
-      const float p[4] = {coordinate[0][i], coordinate[1][i], coordinate[2][i], coordinate[3][i]};
-      grid_.ranges_behind(i, [&](std::int32_t begin, std::int32_t end) {
-        if (begin >= end) return;
-        if (end - begin + 32 > static_cast<std::int32_t>(found.size())) found.resize(2 * (end - begin) + 32);
-        const auto count =
-            kernels_.find_close(&coordinate[0][begin], &coordinate[1][begin], &coordinate[2][begin],
-                                &coordinate[3][begin], p, period, inverse, begin, end - begin, found.data());
-        const auto row = static_cast<std::int32_t>(i);
-        if (begin >= share.range.begin && end <= share.range.end)
-          return share.own.add_near(row, found.data(), count);
-        for (std::int64_t k = 0; k < count; ++k) {
-          const auto j = found[k];
-          if (j >= share.range.begin && j < share.range.end) {
-            share.own.add_near(row, j);
-          } else {
-            share.cross.add_near(row, j);
-            share.outbox[owner_of(j)].push_back({j, row});
-          }
-        }
-      });
-    }
-#pragma omp barrier
-    for (const auto& other : shares_)
-      for (const auto& [i, j] : other.outbox[t]) share.cross.add_near(i, j);
-    const auto idle = static_cast<std::int32_t>(n + 2 * t);
-    share.own.finish_near(idle), share.cross.finish_near(idle);
+  skins_.base_m = skins_.widest_m = skin(slow, half_skin * largest_radius, widest_half_skin * largest_radius);
+  skins_.half_m.resize(rows.count);
+  for (std::int64_t i = 0; i < rows.count; ++i) {
+    skins_.half_m[i] = skin(speed[i], skins_.base_m, widest_own_skin * largest_radius);
+    skins_.widest_m = std::max(skins_.widest_m, skins_.half_m[i]);
   }
 }
 
@@ -186,8 +166,8 @@ void ContactLists::find_walls(const Rows& rows, const Periods& periods, const Wa
 #pragma omp parallel num_threads(static_cast <int>(shares_.size()))
   {
     Share& share = shares_[omp_get_thread_num()];
-    share.walls.find_near(surface, grid_, rows, periods, share.range, half_skin_m_ + listed_wall_gap_m_,
-                          moved, half_skin_m_);
+    share.walls.find_near(surface, grid_, rows, periods, share.range, skins_.half_m, listed_wall_gap_m_,
+                          moved, skins_.widest_m);
     for (auto i = share.range.begin; i < share.range.end; ++i)
       for (int a = 0; a < 3; ++a) wall_origin_[3 * i + a] = rows.position[4 * i + a];
   }
@@ -202,10 +182,11 @@ std::int64_t ContactLists::prepare(Rows& rows, Model& model, const Periods& peri
   spare_speed_m_s_ =
       std::max(spare_speed_m_s_, smallest_margin * model.largest_radius / (step_s_ * double(steps)));
   check_speeds(rows, bed);
-  Motion motion = measure(rows, steps);
+  closing_.assign(rows.count + 2 * shares_.size(), 0);
+  const Room room = measure(rows, steps);
   const bool due = (schedule_.rebuild_every > 0 && steps_since_sort_ >= schedule_.rebuild_every) ||
                    listed_gap_m_ < asked_gap_m_;
-  const bool rebuild = stale_ || due || motion.near_need > half_skin_m_;
+  const bool rebuild = stale_ || due || room.near_m < 0;
   if (rebuild) {
     ++rebuilds;
     if (!stale_) memories_ = collect(rows);
@@ -214,12 +195,10 @@ std::int64_t ContactLists::prepare(Rows& rows, Model& model, const Periods& peri
     mean_velocity_ = rows.count ? sum * (1.0 / double(rows.count)) : Vec3{};
     steps_since_sort_ = 0;
     stale_ = true;
-    motion = measure(rows, steps);
-    const double widest = widest_half_skin * model.largest_radius;
-    half_skin_m_ = std::clamp(4 * margin_of(motion.fastest, steps), half_skin * model.largest_radius, widest);
     listed_gap_m_ = std::max(0.0, asked_gap_m_);
-    sort_rows(rows, periods, bed, 2 * (model.largest_radius + half_skin_m_ + 0.5 * listed_gap_m_) * 1.00001);
-    find_near(rows, periods);
+    choose_skins(rows, model.largest_radius, steps);
+    sort_rows(rows, periods, bed, 2 * (model.largest_radius + skins_.base_m + 0.5 * listed_gap_m_) * 1.00001);
+    NearSearch(kernels_, grid_, rows, periods, skins_, listed_gap_m_).fill(shares_);
     memory_table_.build(memories_, rows);
     std::vector<std::vector<WallMemory>> at_walls(shares_.size());
     for (const auto& m : memories_) {
@@ -237,18 +216,16 @@ std::int64_t ContactLists::prepare(Rows& rows, Model& model, const Periods& peri
     memories_.clear();
     stale_ = false, walls_stale_ = true;
   }
-  if (walls_stale_ || motion.wall_need > half_skin_m_) {
+  if (walls_stale_ || room.walls_m < 0) {
     find_walls(rows, periods, surface);
     walls_stale_ = false;
   }
   while (steps > 1) {  // a fast particle shortens the life of the list
-    motion = measure(rows, steps);
-    if (std::max(motion.near_need, motion.wall_need) <= half_skin_m_) break;
+    const Room left = measure(rows, steps);
+    if (std::min(left.near_m, left.walls_m) >= 0) break;
     steps /= 2;
   }
-  set_reaches(rows, steps);
-  for (int a = 0; a < 3; ++a) model.move.mean_velocity[a] = mean_velocity_[a];
-  const double mean_reach = norm(mean_velocity_) * step_s_ * double(steps);
+  anticipate(rows, model, periods, surface, steps);
   const bool varied = !rows.uniform;
 #pragma omp parallel num_threads(static_cast <int>(shares_.size()))
   {
@@ -258,7 +235,7 @@ std::int64_t ContactLists::prepare(Rows& rows, Model& model, const Periods& peri
       list->refresh(kernels_, rows.view(), model.constants, memory_table_);
       if (varied) list->fill_coefficients(rows, bed.materials);
     }
-    share.walls.refresh(surface, rows, periods, bed.materials, mean_reach,
+    share.walls.refresh(surface, rows, periods, bed.materials, model.constants.life_s,
                         static_cast<std::int32_t>(rows.count + 2 * t));
   }
   life_ = promised_ = steps;
@@ -293,9 +270,9 @@ std::vector<Memory> ContactLists::collect(const Rows& rows) const {
 ContactLists::CompleteGaps ContactLists::complete_gaps(const Rows& rows) const {
   CompleteGaps gaps;
   if (stale_) return gaps;
-  const Motion motion = measure(rows, 0);
-  gaps.particles_m = listed_gap_m_ + 2 * (half_skin_m_ - motion.near_need);
-  if (!walls_stale_) gaps.walls_m = listed_wall_gap_m_ + half_skin_m_ - motion.wall_need;
+  const Room room = measure(rows, 0);
+  gaps.particles_m = listed_gap_m_ + 2 * room.near_m;
+  if (!walls_stale_) gaps.walls_m = listed_wall_gap_m_ + room.walls_m;
   return gaps;
 }
 

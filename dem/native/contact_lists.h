@@ -4,22 +4,10 @@
 
 #include "dem/native/grid.h"
 #include "dem/native/model.h"
-#include "dem/native/pair_list.h"
-#include "dem/native/wall_contacts.h"
+#include "dem/native/near_search.h"
+#include "dem/native/share.h"
 
 namespace granrad::native {
-
-/// One thread's part of the work: it owns a range of rows. Pairs inside the range are worked on once; a pair
-/// across two ranges is worked on by both owners, each adding the force to its own row. Both get the same
-/// bits, as the law is exactly antisymmetric.
-struct Share {
-  WallContacts::Range range{0, 0};
-  PairList own, cross;
-  WallContacts walls;
-  std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> outbox;  ///< [owner] twins of cross pairs
-  double deepest = -1;
-  bool too_fast = false;
-};
 
 /// How often lists are made anew; results do not depend on it.
 struct ListSchedule {
@@ -59,18 +47,20 @@ class ContactLists {
   std::int64_t rebuilds = 0, refreshes = 0;  ///< for the bench
 
  private:
-  struct Motion {
-    double fastest = 0;    ///< largest |v - mean| component, m/s
-    double travelled = 0;  ///< largest distance moved since the near list, beside the mean
-    double near_need = 0;  ///< largest distance moved + reach margin
-    double wall_need = 0;  ///< the same without the mean, since the wall list
+  /// Ways left within the lists, m; negative: a list no longer holds.
+  struct Room {
+    double near_m, walls_m;
   };
   double margin_of(double speed, std::int64_t steps) const;
-  Motion measure(const Rows& rows, std::int64_t steps) const;
+  void anticipate(Rows& rows, Model& model, const Periods& periods, const WallSurface& surface,
+                  std::int64_t steps);
+  Room room_of(const Rows& rows, std::int64_t i, const Vec3& moved) const;
+  /// The least of any row after `steps` more.
+  Room measure(const Rows& rows, std::int64_t steps) const;
   void check_speeds(const Rows& rows, const Bed& bed) const;
   void set_reaches(Rows& rows, std::int64_t steps);
   void sort_rows(Rows& rows, const Periods& periods, const Bed& bed, double cell_m);
-  void find_near(const Rows& rows, const Periods& periods);
+  void choose_skins(const Rows& rows, double largest_radius, std::int64_t steps);
   void find_walls(const Rows& rows, const Periods& periods, const WallSurface& surface);
   Vec3 drift() const { return mean_velocity_ * (step_s_ * double(steps_since_sort_)); }
 
@@ -81,8 +71,10 @@ class ContactLists {
   MemoryTable memory_table_;
   std::vector<Memory> memories_;
   std::vector<double> near_origin_, wall_origin_;  ///< [3 n] where the rows were when the list was made
+  std::vector<double> closing_;                    ///< [n + idle rows] see PairList::find_closing_speeds
+  Skins skins_;
   Vec3 mean_velocity_{};
-  double step_s_ = 0, half_skin_m_ = 0, spare_speed_m_s_ = 0;
+  double step_s_ = 0, spare_speed_m_s_ = 0;
   double asked_gap_m_ = -1, listed_gap_m_ = 0, listed_wall_gap_m_ = 0;  ///< gaps that outlive the skin
   std::int64_t life_ = 0, promised_ = 0, steps_since_sort_ = 0;
   bool stale_ = true, walls_stale_ = true;

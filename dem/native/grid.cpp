@@ -46,6 +46,14 @@ int Grid::cell_at(int k, double x) const {
   return static_cast<int>(std::clamp(t * inverse_size_[k], 0.0, count_[k] - 1.0));
 }
 
+void Grid::cells_about(int k, double x, double reach, int& low, int& high) const {
+  low = cell_at(k, x - reach), high = cell_at(k, x + reach);
+  if (!periodic_[k]) return;
+  const int across = static_cast<int>(std::ceil(reach * inverse_size_[k])), middle = cell_at(k, x);
+  low = middle - across, high = middle + across;
+  if (high - low >= count_[k] - 1) low = 0, high = count_[k] - 1;
+}
+
 std::vector<std::int32_t> Grid::sort(const Rows& rows, const Periods& periods, const Box& box, double cell_m,
                                      int threads) {
   fit(rows, periods, box, cell_m);

@@ -22,6 +22,26 @@ class Grid {
               a = key / count_[2] / count_[1];
     forward(a, b, c, static_cast<std::int32_t>(i) + 1, visit);
   }
+  /// Rows that may stand within `reach_m` of p (of its images where periodic), when sorted: visit(begin,
+  /// end), each row once.
+  template <class Visit>
+  void ranges_about(const Vec3& p, double reach_m, Visit visit) const {
+    int low[3], high[3];
+    for (int k = 0; k < 3; ++k) cells_about(k, p[axis_[k]], reach_m, low[k], high[k]);
+    const auto wrapped = [&](int k, int c) {
+      return c < 0 ? c + count_[k] : c < count_[k] ? c : c - count_[k];
+    };
+    const auto cells = [&](int a, int b, int from, int to) {
+      if (from <= to) visit(begin_of(a, b, from), begin_of(a, b, to) + length_of(a, b, to));
+    };
+    for (int i = low[0]; i <= high[0]; ++i)
+      for (int j = low[1]; j <= high[1]; ++j) {
+        const int a = wrapped(0, i), b = wrapped(1, j), n = count_[2];
+        cells(a, b, std::max(low[2], 0), std::min(high[2], n - 1));
+        cells(a, b, std::max(low[2] + n, 0), n - 1);
+        cells(a, b, 0, high[2] - n);
+      }
+  }
   /// Rows whose centre stood in the cells touching the box when sorted: visit(begin, end).
   template <class Visit>
   void ranges_in(const Box& box, Visit visit) const {
@@ -37,6 +57,8 @@ class Grid {
 
  private:
   int cell_at(int k, double x) const;
+  /// Cells within reach of x along axis k; beyond the ends where periodic, but never all round twice.
+  void cells_about(int k, double x, double reach, int& low, int& high) const;
   std::int32_t begin_of(int a, int b, int c) const { return begin_[(a * count_[1] + b) * count_[2] + c]; }
   std::int32_t length_of(int a, int b, int c) const {
     const int key = (a * count_[1] + b) * count_[2] + c;

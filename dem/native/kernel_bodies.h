@@ -208,7 +208,7 @@ struct KernelBodies {
           S::row_multiply(S::row_take(rows.force + 8 * i), S::row_load(m.kick + m.kick_stride * i));
       const auto v = S::row_add(S::row_add(S::row_load(rows.velocity + 8 * i), push), gravity);
       S::row_store(rows.velocity + 8 * i, v);
-      too_fast |= S::row_too_fast(v, m.mean_velocity);
+      too_fast |= S::row_too_fast(v, m.reference + 4 * i);
       S::row_drift(rows.position + 4 * i, v, m.half_step_s, !last);
     }
     return too_fast;
@@ -223,7 +223,11 @@ struct KernelBodies {
       V d[4];
       S::pair_positions(rows.position, i + k, j + k, d);
       nearest_image<periodic>(constants, d);
-      unsigned close = S::bits(S::less(d[0] * d[0] + d[1] * d[1] + d[2] * d[2], d[3] * d[3]));
+      V u[3], spin[3];
+      S::pair_velocities(rows.velocity, i + k, j + k, u, spin);
+      const V way = S::set(constants.life_s) * S::sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+      const V reach = d[3] + way;
+      unsigned close = S::bits(S::less(d[0] * d[0] + d[1] * d[1] + d[2] * d[2], reach * reach));
       for (int l = 0; l < W; ++l, close >>= 1) {
         first[found] = i[k + l], second[found] = j[k + l], source[found] = std::int32_t(k + l);
         found += close & 1;

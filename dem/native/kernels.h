@@ -7,9 +7,9 @@ namespace granrad::native {
 
 /// Rows of all particles, in the engine's own order. 64-byte aligned.
 struct RowView {
-  double* position;     ///< [4] x, y, z at the middle of the step, reach (radius + what it may move until the
-                        ///< next refresh)
-  double* velocity;     ///< [8] v, speed limit, omega, 0
+  double* position;     ///< [4] x, y, z at the middle of the step, reach (radius + what a change of its
+                        ///< velocity may move it until the next refresh)
+  double* velocity;     ///< [8] v, 0, omega, 0
   std::int64_t* force;  ///< [8] F, 0, torque, 0, in fixed point; zero between steps
 };
 
@@ -51,6 +51,7 @@ struct StepConstants {
   HertzMindlin<double> pair, wall;  ///< when all particles are alike
   double radius;
   double step_s;
+  double life_s;  ///< of the tight lists, from one refresh to the next
   bool periodic;
   double period[3], inverse_period[3];  ///< zero where not periodic
   double force_scale, torque_scale;     ///< fixed-point units per N and per N m (powers of two)
@@ -61,7 +62,7 @@ struct MoveConstants {
   const double* kick;                  ///< aligned like the rows
   std::int64_t kick_stride;            ///< 0: one row for all, 8: one each
   alignas(64) double gravity_kick[8];  ///< {g dt, 0 ...}
-  double mean_velocity[4];             ///< speed limits are relative to it
+  const double* reference;             ///< rows {v at the last refresh, most it may change in each direction}
   double half_step_s;
 };
 
@@ -81,8 +82,9 @@ struct Kernels {
   /// moves another half step, to the middle of the next one. True if a speed limit is broken (or not a
   /// number).
   bool (*move)(const RowView&, std::int64_t begin, std::int64_t end, const MoveConstants&, bool last);
-  /// Keeps the pairs closer than the sum of their reaches: rows into `first`, `second`, their numbers into
-  /// `source`. `count` is padded to a multiple of 8. Returns how many; writes up to 8 entries beyond.
+  /// Keeps the pairs closer than the sum of their reaches and of what they move towards each other in life_s:
+  /// rows into `first`, `second`, their numbers into `source`. `count` is padded to a multiple of 8. Returns
+  /// how many; writes up to 8 entries beyond.
   std::int64_t (*select_close)(const RowView&, const StepConstants&, const std::int32_t* i,
                                const std::int32_t* j, std::int64_t count, std::int32_t* first,
                                std::int32_t* second, std::int32_t* source);

@@ -105,6 +105,7 @@ std::int64_t NativeEngine::Impl::run(std::int64_t steps, bool finishes, bool& li
   std::int64_t done = 0;
   limit_broken = false;
   model.move.kick = rows.uniform ? model.kick_row.data() : rows.kick.data();
+  model.move.reference = rows.reference.data();
   StepBarrier barrier(static_cast<int>(shares.size()));
 #pragma omp parallel num_threads(static_cast <int>(shares.size()))
   {

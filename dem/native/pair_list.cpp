@@ -1,5 +1,7 @@
 #include "dem/native/pair_list.h"
 
+#include <algorithm>
+
 #include "dem/native/materials.h"
 
 namespace granrad::native {
@@ -45,13 +47,30 @@ void PairList::finish_near(std::int32_t idle_row) {
   fresh_ = true;
 }
 
-void PairList::refresh(const Kernels& kernels, const RowView& rows, const StepConstants& constants,
-                       const MemoryTable& memories) {
+std::int64_t PairList::select(const Kernels& kernels, const RowView& rows, const StepConstants& constants) {
   const auto room = static_cast<std::int64_t>(near_i_.size()) + 8 + look_ahead + 8;
   next_first_.resize(room), next_second_.resize(room), next_source_.resize(room);
-  const auto found = kernels.select_close(rows, constants, near_i_.data(), near_j_.data(),
-                                          static_cast<std::int64_t>(near_i_.size()), next_first_.data(),
-                                          next_second_.data(), next_source_.data());
+  return kernels.select_close(rows, constants, near_i_.data(), near_j_.data(),
+                              static_cast<std::int64_t>(near_i_.size()), next_first_.data(),
+                              next_second_.data(), next_source_.data());
+}
+
+void PairList::find_closing_speeds(const Kernels& kernels, const RowView& rows,
+                                   const StepConstants& constants, bool first_only,
+                                   std::vector<double>& closing) {
+  const auto found = select(kernels, rows, constants);
+  for (std::int64_t k = 0; k < found; ++k) {
+    const auto i = next_first_[k], j = next_second_[k];
+    const double *v = rows.velocity + 8 * std::int64_t(i), *w = rows.velocity + 8 * std::int64_t(j);
+    const double speed = norm(Vec3{v[0] - w[0], v[1] - w[1], v[2] - w[2]});
+    closing[i] = std::max(closing[i], speed);
+    if (!first_only) closing[j] = std::max(closing[j], speed);
+  }
+}
+
+void PairList::refresh(const Kernels& kernels, const RowView& rows, const StepConstants& constants,
+                       const MemoryTable& memories) {
+  const auto found = select(kernels, rows, constants);
   const auto padded = (found + 7) / 8 * 8;
   for (auto k = found; k < padded + look_ahead; ++k)
     next_first_[k] = idle_row_, next_second_[k] = idle_row_ + 1;

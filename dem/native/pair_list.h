@@ -37,6 +37,10 @@ class PairList {
   /// Pads with the idle rows; call when all near pairs are in.
   void finish_near(std::int32_t idle_row);
 
+  /// Raises closing[row] to the speed, m/s, at which a row that may be met soon (by the reaches in the rows)
+  /// approaches or leaves; of both rows, or of the first only.
+  void find_closing_speeds(const Kernels& kernels, const RowView& rows, const StepConstants& constants,
+                           bool first_only, std::vector<double>& closing);
   /// Chooses the tight pairs by the reaches in the rows and carries the springs over, from the list before
   /// or, after finish_near, from `memories`.
   void refresh(const Kernels& kernels, const RowView& rows, const StepConstants& constants,
@@ -58,6 +62,8 @@ class PairList {
   std::size_t bytes() const;
 
  private:
+  std::int64_t select(const Kernels& kernels, const RowView& rows, const StepConstants& constants);
+
   AlignedVector<std::int32_t> near_i_, near_j_;
   AlignedVector<std::int32_t> first_, second_, source_, next_first_, next_second_, next_source_;
   AlignedVector<double> displacement_[3], next_displacement_[3];

@@ -13,7 +13,7 @@ namespace granrad::native {
 /// stand two idle rows for each thread, far apart, which pad the contact lists.
 struct Rows {
   std::int64_t count = 0;
-  AlignedVector<double> position, velocity, kick;  ///< see RowView and MoveConstants
+  AlignedVector<double> position, velocity, kick, reference;  ///< see RowView and MoveConstants
   AlignedVector<std::int64_t> force;
   std::vector<std::int32_t> bed_index;  ///< row -> index in the Bed
   std::vector<std::int32_t> row_of;     ///< index in the Bed -> row

@@ -138,10 +138,9 @@ struct Avx2Pack {
   GRANRAD_INLINE Row row_add(const Row& a, const Row& b) {
     return {_mm256_add_pd(a.low, b.low), _mm256_add_pd(a.high, b.high)};
   }
-  GRANRAD_INLINE bool row_too_fast(const Row& r, const double* mean) {
-    const __m256d speed = abs(_mm256_sub_pd(r.low, _mm256_loadu_pd(mean)));
-    const __m256d limit = _mm256_permute4x64_pd(r.low, 0xff);
-    return _mm256_movemask_pd(_mm256_cmp_pd(speed, limit, _CMP_NLE_UQ)) & 7;
+  GRANRAD_INLINE bool row_too_fast(const Row& r, const double* reference) {
+    const __m256d from = _mm256_load_pd(reference), change = abs(_mm256_sub_pd(r.low, from));
+    return _mm256_movemask_pd(_mm256_cmp_pd(change, _mm256_permute4x64_pd(from, 0xff), _CMP_NLE_UQ)) & 7;
   }
   GRANRAD_INLINE void row_drift(double* position, const Row& r, double half, bool twice) {
     const __m256d move = _mm256_mul_pd(_mm256_setr_pd(half, half, half, 0.0), r.low);

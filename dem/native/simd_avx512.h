@@ -134,10 +134,11 @@ struct Avx512Pack {
   }
   GRANRAD_INLINE Row row_multiply(Row a, Row b) { return _mm512_mul_pd(a, b); }
   GRANRAD_INLINE Row row_add(Row a, Row b) { return _mm512_add_pd(a, b); }
-  GRANRAD_INLINE bool row_too_fast(Row r, const double* mean) {
+  GRANRAD_INLINE bool row_too_fast(Row r, const double* reference) {
     const __m256d v = _mm512_castpd512_pd256(r);
-    const __m256d speed = _mm256_andnot_pd(_mm256_set1_pd(-0.0), _mm256_sub_pd(v, _mm256_loadu_pd(mean)));
-    return _mm256_cmp_pd_mask(speed, _mm256_permute4x64_pd(v, 0xff), _CMP_NLE_UQ) & 7;
+    const __m256d from = _mm256_load_pd(reference);
+    const __m256d change = _mm256_andnot_pd(_mm256_set1_pd(-0.0), _mm256_sub_pd(v, from));
+    return _mm256_cmp_pd_mask(change, _mm256_permute4x64_pd(from, 0xff), _CMP_NLE_UQ) & 7;
   }
   GRANRAD_INLINE void row_drift(double* position, Row r, double half, bool twice) {
     const __m256d move = _mm256_mul_pd(_mm256_setr_pd(half, half, half, 0.0), _mm512_castpd512_pd256(r));

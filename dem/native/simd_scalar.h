@@ -101,10 +101,10 @@ struct ScalarPack {
     for (int k = 0; k < 8; ++k) r.lane[k] = a.lane[k] + b.lane[k];
     return r;
   }
-  /// True unless |v - mean| <= limit in all three directions; v and limit stand in the row.
-  GRANRAD_INLINE bool row_too_fast(const Row& r, const double* mean) {
+  /// True unless |v - reference| <= reference[3] in all three directions.
+  GRANRAD_INLINE bool row_too_fast(const Row& r, const double* reference) {
     bool fine = true;
-    for (int k = 0; k < 3; ++k) fine &= __builtin_fabs(r.lane[k] - mean[k]) <= r.lane[3];
+    for (int k = 0; k < 3; ++k) fine &= __builtin_fabs(r.lane[k] - reference[k]) <= reference[3];
     return !fine;
   }
   /// position += half v, `twice` or once; rounded each time.

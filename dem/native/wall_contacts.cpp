@@ -68,12 +68,12 @@ std::vector<Touch> distinct_touches(const WallSurface& surface, const std::int32
 }  // namespace
 
 void WallContacts::find_near(const WallSurface& surface, const Grid& grid, const Rows& rows,
-                             const Periods& periods, Range range, double skin_m, const Vec3& drift,
-                             double slack_m) {
+                             const Periods& periods, Range range, const std::vector<double>& skin_m,
+                             double gap_m, const Vec3& drift, double slack_m) {
   near_.clear();
   double largest = 0;
-  for (auto i = range.begin; i < range.end; ++i) largest = std::max(largest, rows.radius[i]);
-  const double margin = largest + skin_m + slack_m;
+  for (auto i = range.begin; i < range.end; ++i) largest = std::max(largest, rows.radius[i] + skin_m[i]);
+  const double margin = largest + gap_m + slack_m;
   const Vec3 grow{margin, margin, margin};
   for (std::int32_t f = 0; f < surface.facet_count(); ++f) {
     if (!surface.stands(f)) continue;
@@ -81,7 +81,7 @@ void WallContacts::find_near(const WallSurface& surface, const Grid& grid, const
     grid.ranges_in(box, [&](std::int64_t begin, std::int64_t end) {
       for (auto i = std::max(begin, range.begin); i < std::min(end, range.end); ++i) {
         const Vec3 p = periods.wrapped(rows.position_of(i));
-        const double reach = rows.radius[i] + skin_m;
+        const double reach = rows.radius[i] + skin_m[i] + gap_m;
         if (is_close(surface, periods, f, p, reach)) near_.push_back({static_cast<std::int32_t>(i), f});
       }
     });
@@ -136,8 +136,22 @@ void WallContacts::finish_planes(const Rows& rows, const std::vector<Material>& 
   }
 }
 
+void WallContacts::find_closing_speeds(const WallSurface& surface, const Rows& rows, const Periods& periods,
+                                       double life_s, std::vector<double>& closing) const {
+  constexpr double rebound = 2;
+  for (const auto& [row, facet] : near_) {
+    const Vec3 v = rows.velocity_of(row) - surface.velocity(facet);
+    const double* plane = surface.plane_rows() + 8 * facet;
+    const double speed = rebound * std::abs(dot(v, Vec3{plane[4], plane[5], plane[6]}));
+    if (speed <= closing[row] || !surface.stands(facet)) continue;
+    const double reach = rows.position[4 * row + 3] + norm(v) * life_s;
+    if (is_close(surface, periods, facet, periods.wrapped(rows.position_of(row)), reach))
+      closing[row] = speed;
+  }
+}
+
 void WallContacts::refresh(const WallSurface& surface, const Rows& rows, const Periods& periods,
-                           const std::vector<Material>& materials, double extra_m, std::int32_t idle_row) {
+                           const std::vector<Material>& materials, double life_s, std::int32_t idle_row) {
   std::vector<WallMemory> kept = restored_ ? std::move(memories_) : collect();
   restored_ = false;
   memories_.clear(), borders_.clear(), border_facets_.clear();
@@ -147,7 +161,8 @@ void WallContacts::refresh(const WallSurface& surface, const Rows& rows, const P
   for (std::size_t k = 0; k < near_.size();) {
     const auto row = near_[k].row;
     const Vec3 p = periods.wrapped(rows.position_of(row));
-    const double reach = rows.position[4 * row + 3] + extra_m, margin = reach - rows.radius[row];
+    const double reach = rows.position[4 * row + 3] + norm(rows.velocity_of(row)) * life_s,
+                 margin = reach - rows.radius[row];
     close.clear();
     for (; k < near_.size() && near_[k].row == row; ++k)
       if (surface.stands(near_[k].facet) && is_close(surface, periods, near_[k].facet, p, reach))

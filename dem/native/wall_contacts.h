@@ -27,13 +27,17 @@ class WallContacts {
   struct Range {
     std::int64_t begin, end;
   };
-  /// Facets within `skin_m` of the rows' surfaces. `drift` is how far the rows' mean moved since the grid was
-  /// sorted, `slack_m` how far a row may have moved beside it.
+  /// Facets within `skin_m[row] + gap_m` of the rows' surfaces. `drift` is how far the rows' mean moved since
+  /// the grid was sorted, `slack_m` how far a row may have moved beside it.
   void find_near(const WallSurface& surface, const Grid& grid, const Rows& rows, const Periods& periods,
-                 Range range, double skin_m, const Vec3& drift, double slack_m);
-  /// Chooses those that can touch before the next refresh; `extra_m` is what the mean flow adds to the reach.
+                 Range range, const std::vector<double>& skin_m, double gap_m, const Vec3& drift,
+                 double slack_m);
+  /// Raises closing[row] to the speed at which a row that may soon meet a facet approaches its plane.
+  void find_closing_speeds(const WallSurface& surface, const Rows& rows, const Periods& periods,
+                           double life_s, std::vector<double>& closing) const;
+  /// Chooses those that can touch before the next refresh; in `life_s`.
   void refresh(const WallSurface& surface, const Rows& rows, const Periods& periods,
-               const std::vector<Material>& materials, double extra_m, std::int32_t idle_row);
+               const std::vector<Material>& materials, double life_s, std::int32_t idle_row);
   /// Adds the forces; returns the largest `overlap - deepest_overlap x radius`.
   double add_forces(const Kernels& kernels, const WallSurface& surface, Rows& rows, const Periods& periods,
                     const StepConstants& constants, const std::vector<Material>& materials);

@@ -1,0 +1,25 @@
+#pragma once
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "dem/native/pair_list.h"
+#include "dem/native/wall_contacts.h"
+
+namespace granrad::native {
+
+/// One thread's part of the work: it owns a range of rows. Pairs inside the range are worked on once; a pair
+/// across two ranges is worked on by both owners, each adding the force to its own row. Both get the same
+/// bits, as the law is exactly antisymmetric.
+struct Share {
+  WallContacts::Range range{0, 0};
+  PairList own, cross;
+  WallContacts walls;
+  std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> outbox;  ///< [owner] twins of cross pairs
+  double deepest = -1;
+  bool too_fast = false;
+
+  bool owns(std::int64_t row) const { return row >= range.begin && row < range.end; }
+};
+
+}  // namespace granrad::native
