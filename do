@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# ./do demo | test | test-long | bench [trace|dem|heat] [--quick]
+# ./do demo | test | test-long | bench [trace|dem|heat|case] [--quick]
 # Each command takes a bare Debian 12 all the way: missing packages, configuration, build, run.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
@@ -19,7 +19,8 @@ usage() {
   demo        a plug flow of hot-walled alumina, about 1 s of flow: table, frames and a page
   test        the test suite (minutes)
   test-long   the physics that takes long
-  bench       speed against error, side by side with LIGGGHTS, LAMMPS, plain Embree and dense LU
+  bench       speed against error, side by side with LIGGGHTS, LAMMPS, plain Embree and dense LU;
+              case: the whole moving bed of the paper beside LIGGGHTS' flow alone
 EOF
 }
 
@@ -92,12 +93,12 @@ EOF
     which=() options=()
     for word in "$@"; do
       case $word in
-        trace | dem | heat) which+=("$word") ;;
+        trace | dem | heat | case) which+=("$word") ;;
         --quick) options+=(--quick) ;;
         *) usage >&2; exit 2 ;;
       esac
     done
-    ((${#which[@]})) || which=(trace dem heat)
+    ((${#which[@]})) || which=(trace dem heat case)
     set_up
     install_missing liggghts lammps
     for name in "${which[@]}"; do

@@ -1,0 +1,97 @@
+// The paper's whole case beside LIGGGHTS: the moving bed of 13 576 spheres with conduction and radiation, 5 s
+// of flow (500 000 steps), against the time LIGGGHTS takes for the flow alone. LIGGGHTS continues from our
+// last frame for some thousand steps on one core; its time for all steps is that rate, halved as if a second
+// core doubled it. Usage: case_bench [--quick] FOLDER
+#include <fmt/format.h>
+#include <fmt/os.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "dem/scene/snapshot.h"
+#include "tests/bench/dem_bench_peers.h"
+
+namespace granrad::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double step_s = 1e-5;
+constexpr int threads = 2;
+constexpr double margin_m = 0.1;  ///< room for what has left the outlet
+
+double seconds_of(const std::string& command) {
+  const auto start = std::chrono::steady_clock::now();
+  if (std::system(command.c_str()) != 0) throw std::runtime_error("failed: " + command);
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+fs::path last_frame(const fs::path& run) {
+  fs::path last;
+  for (const auto& entry : fs::directory_iterator(run / "frames")) last = std::max(last, entry.path());
+  return last;
+}
+
+/// LIGGGHTS knows walls as triangles and needs a box that holds everything; shutters that have opened and
+/// walls without contact are not there.
+Bed with_meshes(Bed bed) {
+  std::erase_if(bed.walls, [&](const Wall& w) { return !w.contact || w.opens_at_s <= bed.time_s; });
+  for (Wall& wall : bed.walls) {
+    if (!wall.is_polygon()) continue;
+    for (std::int32_t k = 2; k < std::int32_t(wall.vertices.size()); ++k)
+      wall.triangles.push_back({0, k - 1, k});
+  }
+  for (const Wall& wall : bed.walls)
+    for (const Vec3& p : wall.vertices)
+      for (int a = 0; a < 3; ++a) {
+        bed.box.min[a] = std::min(bed.box.min[a], p[a] - margin_m);
+        bed.box.max[a] = std::max(bed.box.max[a], p[a] + margin_m);
+      }
+  return bed;
+}
+
+int run(const fs::path& folder, bool quick) {
+  const double end_s = quick ? 0.1 : 5;
+  const auto steps = static_cast<std::int64_t>(end_s / step_s + 0.5);
+  const fs::path out = folder / "case";
+  fs::remove_all(out);
+  const double ours = seconds_of(fmt::format(
+      "'{}' run '{}/data/scenes/moving_bed_4x4.toml' -q -o '{}' --threads {} --set scene.end_time_s={}",
+      GRANRUN, GRANRAD_SOURCE_DIR, out.string(), threads, end_s));
+  const Bed bed = with_meshes(read_frame(last_frame(out)).bed);
+  const int warm_up = 200, measured = quick ? 500 : 4000;
+  const auto rate = run_liggghts(folder, bed, {0, 0, -9.81}, warm_up, measured);
+  auto csv = fmt::output_file((folder / "case_bench.csv").string());
+  csv.print("case,ours,unit,peer,theirs,ratio\n");
+  if (!rate) {
+    fmt::print("paper_case_{}s ours {:.1f} s ({} particles; LIGGGHTS is not installed or failed)\n", end_s,
+               ours, bed.size());
+    return 0;
+  }
+  const double theirs = double(bed.size()) * double(steps) / (*rate * 1e6) / threads;
+  fmt::print("paper_case_{}s ours {:.1f} s liggghts {:.1f} s ratio {:.2f}\n", end_s, ours, theirs,
+             theirs / ours);
+  csv.print("paper_case_{}s,{:.4g},s,liggghts,{:.4g},{:.4g}\n", end_s, ours, theirs, theirs / ours);
+  return 0;
+}
+
+}  // namespace
+}  // namespace granrad::bench
+
+int main(int argc, char** argv) {
+  bool quick = false;
+  std::string folder;
+  for (int k = 1; k < argc; ++k)
+    if (const std::string_view word = argv[k]; word == "--quick")
+      quick = true;
+    else
+      folder = word;
+  if (folder.empty()) {
+    fmt::print(stderr, "usage: case_bench [--quick] FOLDER\n");
+    return 2;
+  }
+  return granrad::bench::run(folder, quick);
+}
