@@ -62,10 +62,10 @@ int read_conduction_interval(TomlTable table, const Scene& scene) {
 void check_source_against_walls(TomlTable& table, RadiationKind kind, const Scene& scene) {
   const std::string name = to_string(kind);
   const bool needs_planes = kind == RadiationKind::lines || kind == RadiationKind::correlation;
-  if (needs_planes && (scene.periodic[0] || scene.periodic[1] || scene.periodic[2]))
+  if (kind == RadiationKind::correlation && (scene.periodic[0] || scene.periodic[1] || scene.periodic[2]))
     table.problem("source",
-                  fmt::format("= {} (the box is periodic: this source needs walls all around); choose paths "
-                              "or embree",
+                  fmt::format("= {} (the box is periodic: this source needs walls all around); choose paths, "
+                              "embree or lines",
                               name));
   for (const Wall& wall : scene.walls) {
     if (wall.role == WallRole::excluded && kind == RadiationKind::paths)

@@ -161,7 +161,7 @@ double solid_fraction(const Enclosure& enclosure) {
   Facets facets(0);
   for (std::size_t w = 0; w < enclosure.walls.size(); ++w)
     facets.add(enclosure.walls[w], static_cast<std::int32_t>(w), {}, 1);
-  const auto volume = facets.enclosed_volume();
+  const auto volume = facets.enclosed_volume({});
   if (!volume || !(*volume > 0))
     throw InputError(
         "the walls do not enclose a volume (the solid fraction of the bed cannot be measured) close the box "

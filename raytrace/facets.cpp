@@ -110,15 +110,30 @@ double Facets::back_crossing(std::int32_t facet, const Vec3& origin, const Vec3&
   return edge_margin(facet, origin + t * direction) >= tolerance_ ? t : infinity;
 }
 
-std::optional<double> Facets::enclosed_volume() const {
-  Vec3 vector_area;
-  double total = 0, volume = 0;
-  for (std::int32_t f = 0; f < count(); ++f) {
-    vector_area += area_[f] * normal_[f];
-    total += area_[f];
-    volume -= offset_[f] * area_[f] / 3;  // normals point into the void
+/// Integral of x_axis over a facet, times the component of its normal.
+double Facets::moment(std::int32_t facet, int axis) const {
+  const auto& v = vertices_[facet];
+  double sum = 0;
+  for (std::size_t k = 2; k < v.size(); ++k) {
+    const double area = 0.5 * dot(cross(v[k - 1] - v[0], v[k] - v[0]), normal_[facet]);
+    sum += area * (v[0][axis] + v[k - 1][axis] + v[k][axis]) / 3;
   }
-  if (count() < 4 || norm(vector_area) > 1e-9 * total || !(volume > 0)) return {};
+  return sum * normal_[facet][axis];
+}
+
+std::optional<double> Facets::enclosed_volume(const std::array<bool, 3>& periodic) const {
+  double total = 0, volume = 0;
+  for (const double a : area_) total += a;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (periodic[axis]) continue;
+    double along = 0;
+    volume = 0;
+    for (std::int32_t f = 0; f < count(); ++f) {
+      along += area_[f] * normal_[f][axis];
+      volume -= moment(f, axis);  // normals point into the void
+    }
+    if (std::abs(along) > 1e-9 * total || !(volume > 0)) return {};
+  }
   return volume;
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -42,10 +43,13 @@ class Facets {
   /// Distance at which it meets the back.
   double back_crossing(std::int32_t facet, const Vec3& origin, const Vec3& direction) const;
 
-  /// Volume enclosed by all pieces (divergence theorem), or nothing when their vector areas do not cancel.
-  std::optional<double> enclosed_volume() const;
+  /// Volume enclosed by all pieces (divergence theorem), or nothing when they do not close the directions
+  /// that are not periodic: their vector areas do not cancel there. Of one period, not for all three
+  /// periodic.
+  std::optional<double> enclosed_volume(const std::array<bool, 3>& periodic) const;
 
  private:
+  double moment(std::int32_t facet, int axis) const;
   void add_piece(std::vector<Vec3> vertices, std::int32_t wall);
 
   struct Edge {

@@ -2,45 +2,36 @@
 
 #include <cmath>
 
+#include "raytrace/line_geometry.h"
+
 namespace granrad {
 
 namespace {
 
-/// Positions along w at which the line of a cell meets surfaces, in metres.
-class LineGeometry {
+/// Where the gap behind `from` begins on the line of a cell, m along w.
+class Starts {
  public:
-  explicit LineGeometry(const LinePass& pass) : pass_(pass) {}
+  explicit Starts(const LinePass& pass)
+      : pass_(pass), scene_(pass.scene()), geometry_{scene_, pass.frame(), pass.lattice()} {}
 
-  /// Where the line leaves (side 1) or enters (side -1) a sphere.
-  double sphere(std::int32_t i, std::int64_t cell, int side) const {
-    const LineScene& s = pass_.scene();
-    const Vec3 c{s.x[i], s.y[i], s.z[i]};
-    const LineFrame& f = pass_.frame();
-    const double du = u(cell) - dot(c, f.u), dv = v(cell) - dot(c, f.v);
-    return dot(c, f.w) + side * std::sqrt(std::max(0.0, s.radius[i] * s.radius[i] - du * du - dv * dv));
+  double sphere(std::int32_t id, std::int64_t cell, int side) const {
+    const auto& images = pass_.images();
+    const auto home = images ? images->home(id) : id;
+    const Vec3 centre = images ? images->centre(id) : Vec3{scene_.x[id], scene_.y[id], scene_.z[id]};
+    return geometry_.sphere(centre, scene_.radius[home], cell, side);
   }
   double face(std::int32_t surface, std::int64_t cell) const {
-    const LineScene& s = pass_.scene();
-    const LineScene::Face& face = s.faces[surface - s.x.size()];
-    const LineFrame& f = pass_.frame();
-    const Vec3 on_line = u(cell) * f.u + v(cell) * f.v;
-    return dot(face.corners[0] - on_line, face.normal) / dot(f.w, face.normal);
+    return geometry_.face(scene_.faces[surface - scene_.x.size()], cell);
   }
-  bool is_sphere(std::int32_t surface) const {
-    return static_cast<std::size_t>(surface) < pass_.scene().x.size();
+  double of(std::int32_t from, std::int64_t cell) const {
+    const bool wall = from >= static_cast<std::int32_t>(scene_.x.size()) && from < scene_.open_surface;
+    return wall ? face(from, cell) : sphere(from, cell, 1);
   }
-  bool is_open(std::int32_t surface) const { return surface == pass_.scene().open_surface; }
 
  private:
-  double u(std::int64_t cell) const {
-    const LineLattice& l = pass_.lattice();
-    return (static_cast<double>(cell % l.pitch) + l.origin_u) * pass_.scene().spacing;
-  }
-  double v(std::int64_t cell) const {
-    const LineLattice& l = pass_.lattice();
-    return (static_cast<double>(cell / l.pitch) + l.origin_v) * pass_.scene().spacing;
-  }
   const LinePass& pass_;
+  const LineScene& scene_;
+  LineGeometry geometry_;
 };
 
 /// Relative standard deviation.
@@ -68,29 +59,34 @@ MeanChord mean_chord(const std::vector<ChordSums>& samples, double total_gaps, d
 }
 
 ChordSums chord_sums(LinePass& pass) {
-  const LineGeometry geometry(pass);
-  const std::int32_t pitch = pass.lattice().pitch;
+  const Starts starts(pass);
+  const std::int32_t pitch = pass.lattice().pitch, open = pass.scene().open_surface;
   ChordSums sums;
-  const auto gap = [&](std::int32_t from, double to_depth, std::int64_t cell) {
-    if (geometry.is_open(from)) return;
-    const double start =
-        geometry.is_sphere(from) ? geometry.sphere(from, cell, 1) : geometry.face(from, cell);
-    sums.length_m += std::max(0.0, to_depth - start);
+  const auto gap = [&](std::int32_t surface, std::int32_t from, double to_depth, std::int64_t cell) {
+    if (from == open) return;
+    const double length =
+        from == unknown_id ? pass.hit_before(surface, cell).distance_m : to_depth - starts.of(from, cell);
+    if (!std::isfinite(length)) return;
+    sums.length_m += std::max(0.0, length);
     ++sums.gaps;
   };
   pass.emit_discs([&](const std::int32_t* p, const std::int32_t* end) {
     while (p < end) {
       const std::int32_t sphere = p[0], corner = p[1];
       auto mask = static_cast<unsigned>(p[2]) & 0xffff;
+      if (pass.images() && pass.images()->is_image(sphere)) {
+        p += 3 + (p[2] >> 16);
+        continue;
+      }
       for (p += 3; mask; mask &= mask - 1, ++p) {
         const int k = __builtin_ctz(mask);
         const std::int64_t cell = corner + static_cast<std::int64_t>(k / line_tile) * pitch + k % line_tile;
-        gap(*p, geometry.sphere(sphere, cell, -1), cell);
+        gap(sphere, *p, starts.sphere(sphere, cell, -1), cell);
       }
     }
   });
   pass.visit_ends([&](std::int32_t surface, std::int64_t cell, std::int32_t from) {
-    if (!geometry.is_open(surface)) gap(from, geometry.face(surface, cell), cell);
+    if (surface != open) gap(surface, from, starts.face(surface, cell), cell);
   });
   return sums;
 }

@@ -49,6 +49,15 @@ void consume_walls(PairCounts::Buffer& buffer, std::int32_t surface, const std::
     buffer.append(surface, ids + k, static_cast<std::int32_t>(std::min<std::int64_t>(n - k, buffer.bunch())));
 }
 
+/// Directions of a replicate whose void length is measured: between walls all are alike, small periodic boxes
+/// scatter.
+int chord_directions(const LineScene& scene) {
+  constexpr std::size_t spheres_wanted = 20000, most = 32;
+  if (!scene.is_periodic()) return 1;
+  return static_cast<int>(
+      std::clamp<std::size_t>(spheres_wanted / std::max<std::size_t>(1, scene.x.size()), 1, most));
+}
+
 Sweep sweep(const LineScene& scene, const LineOptions& options, int directions) {
   const std::size_t surfaces = scene.surface_count();
   const std::size_t buffer_bytes =
@@ -61,6 +70,7 @@ Sweep sweep(const LineScene& scene, const LineOptions& options, int directions) 
   const int block = std::clamp(affordable, std::min(4, directions), directions);
   std::int64_t leaked = 0;
   std::vector<ChordSums> chords;
+  const int chord_samples = std::min(directions, chord_directions(scene));
 #pragma omp parallel num_threads(threads) reduction(+ : leaked)
   {
     LinePass pass(scene);
@@ -80,8 +90,8 @@ Sweep sweep(const LineScene& scene, const LineOptions& options, int directions) 
         counts.keep_within_limit(options.seed);
       }
 #pragma omp single
-      {
-        pass.aim(line_frame(options.seed, replicate, 0, directions));
+      for (int k = 0; k < chord_samples; ++k) {
+        pass.aim(line_frame(options.seed, replicate, k * directions / chord_samples, directions));
         chords.push_back(chord_sums(pass));
       }
       counts.end_replicate();

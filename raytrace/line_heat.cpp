@@ -30,6 +30,27 @@ struct FixedPoint {
 
 using Sums = std::vector<std::int64_t>;
 
+/// Adds the power differences of all pairs of neighbours to both: for periodic scenes, whose lines cannot be
+/// walked back.
+void receive_pairs(LinePass& pass, const std::vector<std::int32_t>& power, std::int64_t* received) {
+  const auto exchange = [&](std::int32_t surface, std::int32_t from) {
+    const std::int64_t difference = std::int64_t{power[from]} - power[surface];
+    received[surface] += difference;
+    received[from] -= difference;
+  };
+  pass.emit(
+      [&](const std::int32_t* p, const std::int32_t* end) {
+        while (p < end) {
+          const std::int32_t sphere = p[0], n = p[2] >> 16;
+          p += 3;
+          for (const std::int32_t* last = p + n; p < last; ++p) exchange(sphere, *p);
+        }
+      },
+      [&](std::int32_t wall, const std::int32_t* from, std::int64_t n) {
+        for (std::int64_t k = 0; k < n; ++k) exchange(wall, from[k]);
+      });
+}
+
 /// Sum of power differences over the line ends of every surface, for each replicate.
 std::vector<Sums> sweep(const LineScene& scene, const std::vector<std::int32_t>& power,
                         const LineOptions& options, int directions) {
@@ -43,7 +64,10 @@ std::vector<Sums> sweep(const LineScene& scene, const std::vector<std::int32_t>&
 #pragma omp for schedule(dynamic) nowait
       for (int k = 0; k < directions; ++k) {
         pass.aim(line_frame(options.seed, replicate, k, directions));
-        pass.receive(power, own.data());
+        if (scene.is_periodic())
+          receive_pairs(pass, power, own.data());
+        else
+          pass.receive(power, own.data());
       }
 #pragma omp critical
       for (std::size_t i = 0; i < own.size(); ++i) total[replicate][i] += own[i];

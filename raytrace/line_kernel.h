@@ -27,6 +27,8 @@ struct LineSpheres {
 /// Cells outside the walls hold this in the lattices of `emit` and `receive`.
 constexpr std::int32_t outside_id = -1;
 constexpr std::int32_t outside_power = INT32_MIN;
+/// What came before on lines that enter a periodic scene from beyond its images.
+constexpr std::int32_t unknown_id = -2;
 /// A tile is 4 x 4 cells; lattices need this many spare columns and rows.
 constexpr int line_tile = 4;
 constexpr int line_key_bits = 22;

@@ -16,7 +16,8 @@ struct LineSpan {
 /// The lattice of lines of one direction, and where each line enters and leaves the walls.
 /// Cell row * pitch + column is the line through (origin + column, origin + row), in spacings along u and v.
 struct LineLattice {
-  double origin_u = 0, origin_v = 0, depth = 0;  ///< spacings; depth: of the nearest point along w
+  double origin_u = 0, origin_v = 0;  ///< spacings
+  double depth = 0, depth_end = 0;    ///< spacings; of the nearest and farthest spheres along w
   std::int32_t columns = 0, rows = 0, pitch = 0;
   double key_scale = 0;  ///< depth keys per spacing
   std::vector<LineSpan> entry, exit;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "raytrace/line_geometry.h"
+
 namespace granrad {
 
 namespace {
@@ -12,9 +14,7 @@ constexpr std::int64_t stream_block = 16384;  // integers: 64 KiB, stays in the 
 
 LinePass::LinePass(const LineScene& scene)
     : scene_(scene), kernels_(line_kernels()), spheres_(scene.spheres()) {
-  const std::size_t n = scene.x.size();
-  key_.resize(n), key_scratch_.resize(n);
-  record_.resize(n), record_scratch_.resize(n);
+  if (scene.is_periodic()) images_.emplace(scene);
   const auto tiles_across = static_cast<std::int64_t>(2 * spheres_.max_reach) / line_tile + 1;
   reserve_ = std::max(stream_block, tiles_across * tiles_across * (3 + line_tile * line_tile) + 16);
   stream_.resize(static_cast<std::size_t>(2 * reserve_));
@@ -23,6 +23,10 @@ LinePass::LinePass(const LineScene& scene)
 void LinePass::aim(const LineFrame& frame) {
   frame_ = frame;
   lattice_.place(scene_, frame);
+  if (images_) spheres_ = images_->choose(frame_, lattice_);
+  const auto n = static_cast<std::size_t>(spheres_.count);
+  key_.resize(n), key_scratch_.resize(n);
+  record_.resize(n), record_scratch_.resize(n);
   kernels_.project(spheres_, lattice_.projection(scene_, frame), key_.data(), record_.data());
   sort_by_depth();
 }
@@ -46,7 +50,7 @@ void LinePass::sort_by_depth() {
 }
 
 void LinePass::fill_entries(const std::vector<LineSpan>& spans, std::int32_t outside, std::int32_t open) {
-  cells_.assign(lattice_.cell_count(), scene_.closed ? outside : open);
+  cells_.assign(lattice_.cell_count(), images_ ? unknown_id : scene_.closed ? outside : open);
   for (const LineSpan& s : spans) std::fill(cells_.begin() + s.begin, cells_.begin() + s.end, s.surface);
 }
 
@@ -54,6 +58,45 @@ std::int32_t LinePass::draw(std::int32_t begin, std::int64_t& length) {
   return kernels_.emit(record_.data(), begin, static_cast<std::int32_t>(record_.size()), spheres_,
                        cells_.data(), lattice_.pitch, stream_.data(),
                        static_cast<std::int64_t>(stream_.size()), reserve_, &length);
+}
+
+Hit LinePass::hit_before(std::int32_t surface, std::int64_t cell) const {
+  const LineGeometry geometry{scene_, frame_, lattice_};
+  const auto spheres = static_cast<std::int32_t>(scene_.x.size());
+  const double depth = surface < spheres
+                           ? geometry.sphere(images_->centre(surface), scene_.radius[surface], cell, -1)
+                           : geometry.face(scene_.faces[surface - spheres], cell);
+  return scene_.tracer->first_hit(geometry.point(cell, depth) + scene_.middle, -1.0 * frame_.w, surface);
+}
+
+/// Surface number of what came before `surface`.
+std::int32_t LinePass::known(std::int32_t from, std::int32_t surface, std::int64_t cell) {
+  if (from != unknown_id) return images_->home(from);
+  const Hit hit = hit_before(surface, cell);
+  if (hit.surface >= 0 && hit.surface != scene_.open_surface) return hit.surface;
+  ++leaked_;
+  return scene_.open_surface;
+}
+
+/// Drops the line ends on images from the stream and names predecessors by surface; returns what is left.
+std::int64_t LinePass::keep_home(std::int64_t length) {
+  std::int32_t *to = stream_.data(), *from = to;
+  const std::int32_t* end = to + length;
+  while (from < end) {
+    const std::int32_t sphere = from[0], corner = from[1], bits = from[2], n = bits >> 16;
+    if (images_->is_image(sphere)) {
+      from += 3 + n;
+      continue;
+    }
+    to[0] = sphere, to[1] = corner, to[2] = bits;
+    to += 3, from += 3;
+    auto mask = static_cast<unsigned>(bits) & 0xffff;
+    for (; mask; mask &= mask - 1) {
+      const int k = __builtin_ctz(mask);
+      *to++ = known(*from++, sphere, corner + std::int64_t{k / line_tile} * lattice_.pitch + k % line_tile);
+    }
+  }
+  return to - stream_.data();
 }
 
 void LinePass::receive(const std::vector<std::int32_t>& power, std::int64_t* received) {

@@ -9,6 +9,8 @@
 
 #include "dem/scene/constants.h"
 #include "dem/scene/error.h"
+#include "raytrace/embree_tracer.h"
+#include "raytrace/facets.h"
 
 namespace granrad {
 
@@ -43,9 +45,9 @@ struct Bounds {
 std::vector<std::string> shape_problems(const Enclosure& e) {
   std::vector<std::string> problems;
   for (int k = 0; k < 3; ++k)
-    if (e.periodic[k])
+    if (e.periodic[k] && !(e.box.size()[k] > 0 && std::isfinite(e.box.size()[k])))
       problems.push_back(
-          fmt::format("lines: periodic direction {} (a line never ends there) try embree", "xyz"[k]));
+          fmt::format("lines: period in {} = {} (must be positive)", "xyz"[k], e.box.size()[k]));
   for (const Wall& wall : e.walls)
     if (!wall.is_polygon())
       problems.push_back(
@@ -90,6 +92,43 @@ bool edges_close(const std::vector<LineScene::Face>& faces) {
     }
   return !faces.empty() &&
          std::all_of(balance.begin(), balance.end(), [](const auto& e) { return e.second == 0; });
+}
+
+/// As edges_close where edges on opposite borders of the box are one.
+bool edges_close_periodically(const std::vector<LineScene::Face>& faces, const Vec3& period,
+                              double tolerance) {
+  struct Edge {
+    Vec3 middle, way;
+    bool matched = false;
+  };
+  std::vector<Edge> edges;
+  for (const auto& face : faces)
+    for (std::size_t k = 0; k < face.corners.size(); ++k) {
+      const Vec3 &a = face.corners[k], &b = face.corners[(k + 1) % face.corners.size()];
+      edges.push_back({0.5 * (a + b), b - a});
+    }
+  const auto meet = [&](const Edge& a, const Edge& b) {
+    Vec3 apart = a.middle - b.middle;
+    for (int k = 0; k < 3; ++k)
+      if (period[k] > 0) apart[k] -= period[k] * std::round(apart[k] / period[k]);
+    return norm(apart) < tolerance && norm(a.way + b.way) < tolerance;
+  };
+  for (auto e = edges.begin(); e != edges.end(); ++e) {
+    if (e->matched) continue;
+    const auto other =
+        std::find_if(e + 1, edges.end(), [&](const Edge& o) { return !o.matched && meet(*e, o); });
+    if (other == edges.end()) return false;
+    other->matched = true;
+  }
+  return true;
+}
+
+/// Whether the walls close the directions that are not periodic.
+bool holds_volume(const Enclosure& e) {
+  if (e.periodic == std::array<bool, 3>{true, true, true}) return true;
+  Facets facets(0);
+  for (const Wall& wall : e.walls) facets.add(wall, 0, e.box.min, 1);
+  return facets.enclosed_volume(e.periodic).has_value();
 }
 
 std::vector<std::string> convexity_problems(const Enclosure& e, const std::vector<LineScene::Face>& faces,
@@ -171,13 +210,28 @@ LineScene::LineScene(const Enclosure& enclosure, double lines_per_disc)
   for (const Wall& wall : enclosure.walls)
     for (const Vec3& p : wall.vertices) all.include(p);
   for (std::size_t i = 0; i < radius.size(); ++i) all.include(enclosure.centre_m[i], radius[i]);
-  const Vec3 middle = all.middle();
-  for (const Vec3& c : enclosure.centre_m)
-    x.push_back(c.x - middle.x), y.push_back(c.y - middle.y), z.push_back(c.z - middle.z);
+  const bool periodic = enclosure.periodic != std::array<bool, 3>{};
+  if (periodic) {
+    all.include(enclosure.box.min), all.include(enclosure.box.max);
+    for (int k = 0; k < 3; ++k) period[k] = enclosure.periodic[k] ? enclosure.box.size()[k] : 0;
+  }
+  middle = all.middle();
+  for (Vec3 c : enclosure.centre_m) {
+    for (int k = 0; k < 3; ++k)
+      if (period[k] > 0) c[k] -= period[k] * std::floor((c[k] - enclosure.box.min[k]) / period[k]);
+    c -= middle;
+    x.push_back(c.x), y.push_back(c.y), z.push_back(c.z);
+  }
 
   const double tolerance = corner_tolerance * all.diameter();
   faces = faces_about(enclosure, middle, tolerance);
-  closed = edges_close(faces);
+  closed = !periodic && edges_close(faces);
+  if (periodic && !(edges_close_periodically(faces, period, 10 * tolerance) && holds_volume(enclosure)))
+    throw InputError(
+        "lines: the walls do not close the directions that are not periodic (or do not run through "
+        "those that are) try embree");
+  if (enclosure.periodic == std::array<bool, 3>{true, true, true} && radius.empty())
+    throw InputError("lines: an empty box, periodic all round (lines would meet nothing) add particles");
   problems = convexity_problems(enclosure, faces, tolerance);
   const bool walls_hold_all = protrusion(*this, enclosure, problems) <= 0 && closed;
   if (!problems.empty()) throw InputError(problems);
@@ -188,6 +242,38 @@ LineScene::LineScene(const Enclosure& enclosure, double lines_per_disc)
     for (const Vec3& p : all.corners()) hull.push_back(p - middle);
   spacing = line_spacing(enclosure, lines_per_disc, all.diameter());
   for (double r : radius) reach.push_back(static_cast<float>(r / spacing));
+  if (periodic) add_periods(enclosure);
+}
+
+double LineScene::room_for_images() const {
+  return is_periodic() ? 2.0 * spheres().max_reach + 2 : 0;
+}
+
+/// An upstream way of five mean chords leaves so few line ends to the tracer that they cost no more than the
+/// images do.
+void LineScene::add_periods(const Enclosure& enclosure) {
+  constexpr double chords = 5, most_periods = 20;
+  double volume = enclosure.box.volume(), surface = 0, shortest = 1e300;
+  for (const double r : radius) volume -= 4.0 / 3 * pi * r * r * r;
+  for (const double a : surface_areas(enclosure)) surface += a;
+  for (int k = 0; k < 3; ++k)
+    if (period[k] > 0) shortest = std::min(shortest, period[k]);
+  upstream_m = std::min(chords * 4 * std::max(volume, 0.0) / surface, most_periods * shortest);
+  tracer = std::make_shared<EmbreeTracer>(enclosure, 1);
+
+  int images[3] = {};
+  for (int k = 0; k < 3; ++k)
+    if (period[k] > 0) images[k] = static_cast<int>(std::ceil(upstream_m / period[k])) + 1;
+  const std::size_t own = faces.size();
+  for (int a = -images[0]; a <= images[0]; ++a)
+    for (int b = -images[1]; b <= images[1]; ++b)
+      for (int c = -images[2]; c <= images[2]; ++c)
+        for (std::size_t f = 0; f < own && (a || b || c); ++f) {
+          Face face = faces[f];
+          for (Vec3& p : face.corners) p += Vec3{a * period.x, b * period.y, c * period.z};
+          face.image = true;
+          faces.push_back(std::move(face));
+        }
 }
 
 }  // namespace granrad

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "raytrace/enclosure.h"
@@ -7,12 +8,15 @@
 
 namespace granrad {
 
+class EmbreeTracer;
+
 /// An enclosure made ready for parallel lines: checked, recentred on its middle, column by column.
 struct LineScene {
   struct Face {
     std::vector<Vec3> corners;
     Vec3 normal;  ///< inward
     std::int32_t surface;
+    bool image = false;  ///< of a face of the box itself: lines enter through it, and are not counted there
   };
 
   std::vector<double> x, y, z, radius;  ///< m, from the middle
@@ -23,6 +27,15 @@ struct LineScene {
   double spacing = 1;      ///< m, between lines
   std::int32_t open_surface = 0;
 
+  /// Periodic scenes (period > 0 in their directions; elsewhere walls close the box): line ends are counted
+  /// in the box itself. What came before is looked for among images as far as upstream_m, and beyond them by
+  /// `tracer`, ray by ray.
+  Vec3 period{}, middle{};
+  double upstream_m = 0;
+  std::shared_ptr<const EmbreeTracer> tracer;
+
+  bool is_periodic() const { return tracer != nullptr; }
+  double room_for_images() const;  ///< spacings around the box that whole discs of images need
   std::size_t surface_count() const { return static_cast<std::size_t>(open_surface) + 1; }
   LineSpheres spheres() const;
 
@@ -30,6 +43,9 @@ struct LineScene {
   /// the mean face is met by 4096 lines), but never more lines than 2^26 in one direction. Throws InputError
   /// with every problem found.
   LineScene(const Enclosure& enclosure, double lines_per_disc);
+
+ private:
+  void add_periods(const Enclosure& enclosure);
 };
 
 }  // namespace granrad

@@ -20,6 +20,9 @@ namespace granrad {
 /// other, the order of entry, so that a line which leaves i inside j is an exchange at distance zero. Where a
 /// chord lies inside another, a pair gets the mean of the two one-way values of that rule; the share of such
 /// line ends is (delta / 4r)^2 per contact of overlap delta (1.6e-4 at delta = 0.05 r).
+/// Periodic directions (the others closed by walls): line ends are counted in the box itself and look back at
+/// images upstream, as far as five mean chords; the few that meet nothing there are traced one by one through
+/// the periods. A sphere may see its own image (X_ii > 0). S stays symmetric and rows close.
 /// A sphere that pokes through a wall exchanges with it at distance zero; what of it no line inside the
 /// walls can meet is left out.
 struct LineOptions {
@@ -51,8 +54,8 @@ struct LineReport {
 /// Counts of line ends: hits symmetric, launched[i] = row sums; the row of the surroundings is empty.
 /// variance_factor holds the variance of a merged pair relative to binomial, from the replicates, doubled:
 /// both counts of a pair are the same lines, so that merging them must not gain anything.
-/// Throws InputError: periodic directions, meshes, walls that are not convex, a sphere centre outside the
-/// walls, values that are not finite.
+/// Throws InputError: meshes, periodic boxes whose other directions are open, walls that are not convex, a
+/// sphere centre outside the walls, values that are not finite.
 HitCounts sweep_view_factors(const Enclosure& enclosure, const LineOptions& options,
                              LineReport* report = nullptr);
 

@@ -38,7 +38,7 @@ double void_volume(const Enclosure& enclosure) {
     Facets facets(0);
     for (std::size_t w = 0; w < enclosure.walls.size(); ++w)
       facets.add(enclosure.walls[w], static_cast<std::int32_t>(w), enclosure.walls[0].vertices[0], 1);
-    const auto enclosed = facets.enclosed_volume();
+    const auto enclosed = facets.enclosed_volume(enclosure.periodic);
     if (!enclosed) return 0;
     volume = *enclosed;
   }

@@ -2,3 +2,4 @@
 granrad_test(unit/line_refusals granrad_raytrace)
 granrad_test(analytic/line_factors granrad_raytrace)
 granrad_test(physics/line_beds granrad_raytrace)
+granrad_test(physics/line_periods granrad_raytrace)
