@@ -102,6 +102,7 @@ SourceComparison compare(const SourceInstant& source, const SourceInstant& refer
 
 std::string source_label(const RadiationSettings& settings) {
   std::string label = to_string(settings.kind);
+  if (settings.order > 0) label += fmt::format(" order {}", settings.order);
   if (settings.kind == RadiationKind::correlation)
     label = fmt::format("{} {}", label, settings.table.stem().string());
   if (settings.closure == Closure::row_sum) label += " row_sum";

@@ -16,8 +16,11 @@ constexpr double default_walks = 10000;  // paths, per update: 1 % noise in the 
 constexpr double default_rays_per_particle = 2000;
 constexpr double default_line_ends_per_particle = 24000;  // 500 directions; lines are far cheaper than rays
 
-double default_rays(RadiationKind kind) {
+constexpr double default_line_ends_for_moments = 4800;  // 100 directions in each replicate
+
+double default_rays(RadiationKind kind, int order) {
   if (kind == RadiationKind::paths) return default_walks;
+  if (order > 0) return default_line_ends_for_moments;
   return kind == RadiationKind::lines ? default_line_ends_per_particle : default_rays_per_particle;
 }
 
@@ -81,6 +84,20 @@ void check_source_against_walls(TomlTable& table, RadiationKind kind, const Scen
   }
 }
 
+void check_order(TomlTable& table, RadiationKind kind, const Scene& scene) {
+  if (kind != RadiationKind::lines)
+    table.problem("order", fmt::format("is not used by source = {}; leave it out or set source = \"lines\"",
+                                       to_string(kind)));
+  if (scene.periodic[0] || scene.periodic[1] || scene.periodic[2])
+    table.problem("order", "must be 0 (the box is periodic); source = \"paths\" is exact there");
+  for (const Wall& wall : scene.walls)
+    if (wall.role == WallRole::excluded)
+      table.problem("order", fmt::format("must be 0 (wall {} is excluded); make it adiabatic", wall.name));
+  if (table.has("closure"))
+    table.problem("closure",
+                  "nothing is closed with order > 0 (its moments close by themselves); leave it out");
+}
+
 /// A plug states its solid fraction; of other beds it is measured when they exist.
 void check_table(TomlTable& table, const std::filesystem::path& file, const Scene& scene) {
   if (!std::filesystem::is_regular_file(file)) return;  // reported by the reader
@@ -100,11 +117,12 @@ RadiationSettings read_radiation(TomlTable table, const Scene& scene, const std:
   settings.kind = kind_from(chosen);
   const bool paths = settings.kind == RadiationKind::paths;
   settings.table = table.file("table", settings.kind == RadiationKind::correlation);
+  settings.order = static_cast<int>(table.integer("order", 0, 3, 0));
   settings.rays = table.number("rays",
                                {.min = paths ? 2.0 * path_batches : 1,
                                 .max = 1e9,
                                 .why = paths ? "walks per update" : "rays per particle"},
-                               default_rays(settings.kind));
+                               default_rays(settings.kind, settings.order));
   settings.every_s =
       table.number("every_s", {.unit = "s", .min = 0, .min_exclusive = true}, settings.every_s);
   settings.closure = table.choice("closure", {"reciprocal", "row_sum"}, "reciprocal") == "row_sum"
@@ -116,10 +134,7 @@ RadiationSettings read_radiation(TomlTable table, const Scene& scene, const std:
     table.problem("table",
                   fmt::format("is not used by source = {}; leave it out or set source = \"correlation\"",
                               to_string(settings.kind)));
-  if (table.integer("order", 0, 3, 0) != 0)
-    table.problem("order",
-                  "must be 0 (radiosities resolved over a surface are not built) for grey surfaces use "
-                  "source = \"paths\", which is exact");
+  if (settings.order > 0) check_order(table, settings.kind, scene);
   if (table.has("closure") && (paths || settings.kind == RadiationKind::none))
     table.problem("closure",
                   fmt::format("nothing is closed with source = {}; leave it out", to_string(settings.kind)));

@@ -22,6 +22,7 @@ struct RadiationSettings {
   double rays = 0;              ///< paths: walks per update; embree, lines: rays per particle
   double every_s = 0.01;
   Closure closure = Closure::reciprocal;
+  int order = 0;  ///< lines only: of the spherical harmonics of each sphere's radiosity; 0: one radiosity
   std::uint64_t seed = 1;
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/harmonic_source.h"
 #include "coupling/radiosity_source.h"
 #include "fit/correlation.h"
 #include "fit/correlation_source.h"
@@ -66,6 +67,8 @@ std::unique_ptr<ExchangeSource> make_radiation_source(const RadiationSettings& s
     case RadiationKind::embree:
       return std::make_unique<RadiositySource>(embree_estimate(settings, threads), settings.closure);
     case RadiationKind::lines:
+      if (settings.order > 0)
+        return std::make_unique<HarmonicSource>(settings.order, line_options(settings, 0, threads));
       return std::make_unique<RadiositySource>(line_estimate(settings, threads), settings.closure);
     case RadiationKind::correlation:
       return std::make_unique<RadiositySource>(
@@ -108,6 +111,11 @@ std::string describe(const RadiationSettings& settings) {
     case RadiationKind::embree:
       return fmt::format("view factors by Embree, {:.0f} rays per particle, {}", settings.rays, closure);
     case RadiationKind::lines:
+      if (settings.order > 0)
+        return fmt::format(
+            "global lines, {:.0f} rays per particle, radiosities of order {} on spheres, in patches on "
+            "walls",
+            settings.rays, settings.order);
       return fmt::format("view factors by global lines, {:.0f} rays per particle, {}", settings.rays,
                          closure);
     case RadiationKind::correlation:
