@@ -12,6 +12,7 @@
 #include "dem/scene/import_stl.h"
 #include "dem/scene/snapshot.h"
 #include "raytrace/line_sweep.h"
+#include "raytrace/mesh_check.h"
 
 namespace granrad {
 
@@ -174,13 +175,16 @@ SnapshotEnclosure read_enclosure(const std::filesystem::path& snapshot, const En
     throw InputError(
         fmt::format("--box: {} has walls of its own (two sets of walls would hide each other) drop --box",
                     snapshot.string()));
-  if (!settings.stl.empty())
-    for (auto& wall : import_stl(settings.stl, 1, "walls")) {
-      wall.contact = false;
-      bed.walls.push_back(wall);
-    }
-  if (settings.box) add_box(bed, *settings.box);
   SnapshotEnclosure result;
+  if (!settings.stl.empty()) {
+    auto walls = import_stl(settings.stl, 1, "walls");
+    result.meshes = fmt::format("{}: {}", settings.stl.string(), describe(check_meshes(walls)));
+    for (auto& wall : walls) {
+      wall.contact = false;
+      bed.walls.push_back(std::move(wall));
+    }
+  }
+  if (settings.box) add_box(bed, *settings.box);
   result.enclosure = make_enclosure(bed, settings.box || own_walls ? bed.box : unbounded());
   restore_file_order(result.enclosure, read.file_row);
   result.left_out = bed.size() - result.enclosure.sphere_count();

@@ -40,6 +40,7 @@ struct EnclosureSettings {
 struct SnapshotEnclosure {
   Enclosure enclosure;
   std::size_t left_out = 0;  ///< particles with their centre outside the box
+  std::string meshes;        ///< how the triangles of the STL fit together; empty without one
 };
 
 /// "X,Y,Z" or "X,Y,Z:x0,y0,z0" in metres. Throws InputError.
