@@ -81,7 +81,7 @@ std::map<std::string, double> stated_over_found(const Enclosure& e, int seeds, T
 
 // Noise of the ratio: 100 seeds of m pairs give 1 / sqrt(200 m), 1 % and less but for the 30 pairs of walls
 // (correlated: 3 %). Sobol finds its variances from its replicates, those of wall pairs from 30 differences.
-// Planted: the part that closure takes out of a pair left out gives 1.15 at near walls; half a hit more in
+// Planted: variances not carried through closure give 1.11 at near walls; half a hit more in
 // every variance 1.4 for far pairs; one table of variance factors for all kinds of pairs 0.88 at near walls
 // (sobol).
 TEST(ClosedErrors, AreTheSpreadBetweenSeeds) {
@@ -232,7 +232,7 @@ TEST(Watch, StopsATrace) {
 TEST(ZeroHits, BoundIsExceededInOnePercent) {
   for (const auto sampling : {Sampling::plain, Sampling::sobol})
     for (const double ratio : {1.0, 2.0})
-      for (const double hits_expected : {1.0, 4.7, 7.0}) {
+      for (const double hits_expected : {2.4, 4.7}) {
         const double r2 = ratio * r, s = 2.5 * (r + r2), exact = exact_two_sphere(r, r2, s);
         const Enclosure e = spheres_in_open_space({{0, 0, 0}, {s, 0, 0}}, {r, r2});
         TraceOptions o;
