@@ -81,9 +81,7 @@ std::map<std::string, double> stated_over_found(const Enclosure& e, int seeds, T
 
 // Noise of the ratio: 100 seeds of m pairs give 1 / sqrt(200 m), 1 % and less but for the 30 pairs of walls
 // (correlated: 3 %). Sobol finds its variances from its replicates, those of wall pairs from 30 differences.
-// Planted: variances not carried through closure give 1.11 at near walls; half a hit more in
-// every variance 1.4 for far pairs; one table of variance factors for all kinds of pairs 0.88 at near walls
-// (sobol).
+// Planted: variances not carried through closure give 1.11 at near walls.
 TEST(ClosedErrors, AreTheSpreadBetweenSeeds) {
   for (const Enclosure* bed : {&equal_bed(), &mixed_bed()})
     for (const auto sampling : {Sampling::sobol, Sampling::plain}) {
@@ -145,8 +143,7 @@ double found_error(const std::vector<std::vector<double>>& runs, bool relative_t
 }
 
 // 5 seeds of 55 and 80 spheres: chi^2 of at least 220 degrees of freedom, 4.8 % of the error; 4 sigma, and 5
-// % for the variance factor of Sobol. Planted: the stated error without the rows' part gives 1.3 and more
-// (fluxes).
+// % for the variance factor of Sobol. Planted: the stated error without the rows' part gives 1.2 to 1.8.
 TEST(TargetError, IsReachedAndHonest) {
   constexpr double target = 0.02;
   for (const Enclosure* bed : {&equal_bed(), &mixed_bed()})
@@ -228,7 +225,7 @@ TEST(Watch, StopsATrace) {
 
 // Two spheres far enough apart that few rays are not sure to hit: how often is the pair not hit although its
 // factor is above the bound? At most 1 %, reached just above the bound by independent rays. 4 sigma of 4000
-// trials at 1 %: 0.63 %. Planted: a bound of -ln 0.1 is exceeded in 9 %.
+// trials at 1 %: 0.63 %. Planted: a bound of -ln 0.1 fails.
 TEST(ZeroHits, BoundIsExceededInOnePercent) {
   for (const auto sampling : {Sampling::plain, Sampling::sobol})
     for (const double ratio : {1.0, 2.0})
@@ -259,7 +256,7 @@ TEST(ZeroHits, BoundIsExceededInOnePercent) {
 
 // Half the memory, so that rare pairs are thinned: rows still close, pairs are the same from both ends, and
 // the sums over 100 seeds are those of full counts within 4 sigma. Planted: kept pairs left at their own
-// count lose 20 sigma.
+// count lose 97 sigma.
 TEST(Thinning, KeepsClosureReciprocityAndSums) {
   const Enclosure& e = mixed_bed();
   TraceOptions o;
