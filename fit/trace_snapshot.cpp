@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <numeric>
 
@@ -11,6 +12,7 @@
 #include "dem/scene/import_stl.h"
 #include "dem/scene/snapshot.h"
 #include "raytrace/line_sweep.h"
+#include "raytrace/mesh_check.h"
 
 namespace granrad {
 
@@ -44,24 +46,82 @@ Box unbounded() {
   return {{-1e30, -1e30, -1e30}, {1e30, 1e30, 1e30}};
 }
 
+/// Surface numbers of the walls of these names.
+std::vector<std::int32_t> walls_named(const Enclosure& enclosure, const std::vector<std::string>& names) {
+  std::vector<std::int32_t> found;
+  std::vector<std::string> problems;
+  std::string known;
+  for (const Wall& wall : enclosure.walls) known += (known.empty() ? "" : ", ") + wall.name;
+  for (const std::string& name : names) {
+    const auto at = std::find_if(enclosure.walls.begin(), enclosure.walls.end(),
+                                 [&](const Wall& wall) { return wall.name == name; });
+    if (at == enclosure.walls.end())
+      problems.push_back(fmt::format("--hot-walls: {} (no such wall; there are: {})", name,
+                                     known.empty() ? "none, add --box" : known));
+    else
+      found.push_back(static_cast<std::int32_t>(enclosure.sphere_count()) +
+                      static_cast<std::int32_t>(at - enclosure.walls.begin()));
+  }
+  if (!problems.empty()) throw InputError(problems);
+  return found;
+}
+
+void refuse_contradictions(const Enclosure& enclosure, const TraceSettings& settings, bool grey) {
+  std::vector<std::string> problems;
+  if (settings.method == TraceMethod::lines && grey)
+    problems.emplace_back(
+        "--emissivity: lines trace black surfaces (a path of reflections is no straight line) use "
+        "--method embree");
+  if (settings.method == TraceMethod::lines && settings.sampling == Sampling::plain)
+    problems.emplace_back("--sampling: random (lines have a sequence of their own) use --method embree");
+  if (enclosure.sphere_count() == 0 && (settings.error > 0 || !settings.hot_walls.empty()))
+    problems.emplace_back("--error: no particles (the stated errors are theirs) use --rays");
+  if (!problems.empty()) throw InputError(problems);
+}
+
 /// Directions that give the rays asked for: a line through a sphere is a ray from each of its two ends.
-LineOptions line_options(const TraceSettings& settings) {
+LineOptions line_options(const TraceSettings& settings, std::vector<std::int32_t> hot_walls) {
   LineOptions options;
   const double per_direction = 2 * options.lines_per_disc * options.replicates;
   options.directions = std::max(16, static_cast<int>(std::lround(settings.rays / per_direction)));
+  if (settings.error > 0) options.directions = 16;
   options.seed = settings.seed;
   options.threads = settings.threads;
   options.target_error = settings.error;
+  options.hot_walls = std::move(hot_walls);
+  options.memory_limit_bytes = settings.memory_limit_bytes;
+  options.watch = settings.watch;
   return options;
 }
 
-TraceOptions embree_options(const TraceSettings& settings) {
+TraceOptions embree_options(const TraceSettings& settings, std::vector<std::int32_t> hot_walls) {
   TraceOptions options;
   options.rays_per_particle = settings.rays;
   options.target_error = settings.error;
+  options.hot_walls = std::move(hot_walls);
+  options.sampling = settings.sampling;
   options.seed = settings.seed;
   options.threads = settings.threads;
+  options.memory_limit_bytes = settings.memory_limit_bytes;
+  options.watch = settings.watch;
   return options;
+}
+
+HitCounts sweep(const Enclosure& enclosure, const LineOptions& options, TraceReport& spent) {
+  const auto start = std::chrono::steady_clock::now();
+  LineReport report;
+  HitCounts counts = sweep_view_factors(enclosure, options, &report);
+  spent.rays = report.ray_equivalents;
+  spent.rounds = report.rounds;
+  spent.error = report.estimated_error;
+  spent.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return counts;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
+  return text;
 }
 
 std::vector<double> surface_emissivities(const Enclosure& enclosure, const TraceSettings& settings) {
@@ -115,13 +175,16 @@ SnapshotEnclosure read_enclosure(const std::filesystem::path& snapshot, const En
     throw InputError(
         fmt::format("--box: {} has walls of its own (two sets of walls would hide each other) drop --box",
                     snapshot.string()));
-  if (!settings.stl.empty())
-    for (auto& wall : import_stl(settings.stl, 1, "walls")) {
-      wall.contact = false;
-      bed.walls.push_back(wall);
-    }
-  if (settings.box) add_box(bed, *settings.box);
   SnapshotEnclosure result;
+  if (!settings.stl.empty()) {
+    auto walls = import_stl(settings.stl, 1, "walls");
+    result.meshes = fmt::format("{}: {}", settings.stl.string(), describe(check_meshes(walls)));
+    for (auto& wall : walls) {
+      wall.contact = false;
+      bed.walls.push_back(std::move(wall));
+    }
+  }
+  if (settings.box) add_box(bed, *settings.box);
   result.enclosure = make_enclosure(bed, settings.box || own_walls ? bed.box : unbounded());
   restore_file_order(result.enclosure, read.file_row);
   result.left_out = bed.size() - result.enclosure.sphere_count();
@@ -130,28 +193,49 @@ SnapshotEnclosure read_enclosure(const std::filesystem::path& snapshot, const En
 
 ViewFactorFile trace(const Enclosure& enclosure, const TraceSettings& settings, const std::string& origin) {
   const bool grey = settings.emissivity || settings.wall_emissivity;
-  if (settings.method == TraceMethod::lines && grey)
-    throw InputError(
-        "--emissivity: lines trace black surfaces (a path of reflections is no straight line) use "
-        "--method embree");
+  refuse_contradictions(enclosure, settings, grey);
+  const auto hot_walls = walls_named(enclosure, settings.hot_walls);
   ViewFactorFile traced;
   traced.enclosure = enclosure;
   traced.method = to_string(settings.method);
   traced.origin = origin;
   traced.seed = settings.seed;
+  traced.error_target = settings.error;
+  traced.hot_walls = joined(settings.hot_walls);
+  traced.sampling = settings.method == TraceMethod::lines  ? "lines"
+                    : settings.sampling == Sampling::sobol ? "sobol"
+                                                           : "random";
   if (grey) {
     traced.emissivity = surface_emissivities(enclosure, settings);
-    traced.counts = trace_total_exchange(enclosure, traced.emissivity, embree_options(settings));
+    traced.counts = trace_total_exchange(enclosure, traced.emissivity, embree_options(settings, hot_walls),
+                                         &traced.spent);
   } else if (settings.method == TraceMethod::lines) {
-    traced.counts = sweep_view_factors(enclosure, line_options(settings));
+    traced.counts = sweep(enclosure, line_options(settings, hot_walls), traced.spent);
   } else {
-    traced.counts = trace_view_factors(enclosure, embree_options(settings));
+    traced.counts = trace_view_factors(enclosure, embree_options(settings, hot_walls), &traced.spent);
   }
   traced.check = self_check(enclosure, traced.counts);
   ClosureReport report;
   traced.closed = close(one_way_estimate(traced.counts), traced.closure, report);
   traced.closure_correction_max = report.largest_correction;
   return traced;
+}
+
+std::string spent_line(const ViewFactorFile& traced) {
+  const TraceReport& spent = traced.spent;
+  std::string line = fmt::format("spent {:.3g} rays in {} round{}, {:.2g} s", static_cast<double>(spent.rays),
+                                 spent.rounds, spent.rounds == 1 ? "" : "s", spent.seconds);
+  if (traced.enclosure.sphere_count() > 0) {
+    line += fmt::format("; error {:.3g} % of the ", 100 * spent.error);
+    line += traced.hot_walls.empty() ? "particle-wall sums"
+                                     : fmt::format("particle fluxes from {}", traced.hot_walls);
+    if (traced.error_target > 0) line += fmt::format(" ({:.3g} % asked for)", 100 * traced.error_target);
+  }
+  if (traced.counts.thinning_unit > 1)
+    line += fmt::format(
+        "; to stay within the memory allowed, pairs of fewer than {0} hits were kept at random, as {0}",
+        traced.counts.thinning_unit);
+  return line;
 }
 
 std::string self_check_line(const SelfCheck& check) {

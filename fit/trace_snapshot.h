@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "raytrace/enclosure.h"
 #include "raytrace/exchange.h"
@@ -16,12 +17,16 @@ const char* to_string(TraceMethod method);
 /// What `vfgen trace` is asked for.
 struct TraceSettings {
   TraceMethod method = TraceMethod::embree;
-  double rays = 10000;                    ///< per particle; walls in proportion to area
-  double error = 0;                       ///< > 0: instead of rays
+  double rays = 10000;                  ///< per particle; walls in proportion to area
+  double error = 0;                     ///< > 0: instead of rays, the stated error wanted (stated_error.h)
+  std::vector<std::string> hot_walls;   ///< whose particle fluxes the stated error is of; none: wall sums
+  Sampling sampling = Sampling::sobol;  ///< embree only
+  std::size_t memory_limit_bytes = std::size_t{4} << 30;
   std::optional<double> emissivity;       ///< grey particles: total exchange areas; embree only
   std::optional<double> wall_emissivity;  ///< default: each wall's own
   std::uint64_t seed = 1;
   int threads = 0;
+  TraceWatch watch;  ///< progress of the present round, and whether to go on
 };
 
 /// How a snapshot without walls becomes an enclosure.
@@ -35,6 +40,7 @@ struct EnclosureSettings {
 struct SnapshotEnclosure {
   Enclosure enclosure;
   std::size_t left_out = 0;  ///< particles with their centre outside the box
+  std::string meshes;        ///< how the triangles of the STL fit together; empty without one
 };
 
 /// "X,Y,Z" or "X,Y,Z:x0,y0,z0" in metres. Throws InputError.
@@ -43,8 +49,12 @@ Box parse_box(const std::string& text);
 /// Reads a snapshot and gives it its walls: its own, those of `stl`, and the box. Throws InputError, IoError.
 SnapshotEnclosure read_enclosure(const std::filesystem::path& snapshot, const EnclosureSettings& settings);
 
-/// Traces, closes (reciprocal) and checks; the caller decides what a failed check means.
+/// Traces, closes (reciprocal) and checks; the caller decides what a failed check means. Throws InputError
+/// for settings that do not go together or walls that are not there, TraceStopped.
 ViewFactorFile trace(const Enclosure& enclosure, const TraceSettings& settings, const std::string& origin);
+
+/// "spent 1.2e+07 rays in 3 rounds, 4.1 s; error 0.96 % of the particle-wall sums (1 % asked for)".
+std::string spent_line(const ViewFactorFile& traced);
 
 /// "closure 1.2e-16, reciprocity chi2 1.01, mean chord 1.0002, leaked 0".
 std::string self_check_line(const SelfCheck& check);

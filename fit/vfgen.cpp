@@ -15,7 +15,7 @@ using Body = std::function<int(Verbosity)>;
 
 /// Options as text, until they are checked.
 struct TraceText {
-  std::string method = "embree", box;
+  std::string method = "embree", sampling = "sobol", box;
 };
 
 void add_trace(CLI::App& app, Body& body) {
@@ -33,10 +33,22 @@ void add_trace(CLI::App& app, Body& body) {
   auto* rays = sub.add_option("--rays", command->trace.rays, "rays per particle, walls in proportion to area")
                    ->check(CLI::Range(1.0, 1e9))
                    ->capture_default_str();
-  sub.add_option("--error", command->trace.error,
-                 "instead: relative rms error wanted of the particle-wall sums")
+  sub.add_option(
+         "--error", command->trace.error,
+         "instead: rms error wanted, relative: of the particle-wall sums, or of the particle fluxes of "
+         "--hot-walls")
       ->check(CLI::Range(1e-6, 1.0))
       ->excludes(rays);
+  sub.add_option("--hot-walls", command->trace.hot_walls,
+                 "names of walls: the stated error is that of the fluxes they alone send to the particles")
+      ->delimiter(',');
+  sub.add_option("--sampling", text->sampling,
+                 "of embree: scrambled Sobol points or independent random numbers")
+      ->check(CLI::IsMember({"sobol", "random"}))
+      ->capture_default_str();
+  sub.add_option("--memory", command->trace.memory_limit_bytes,
+                 "largest use, such as 512MiB; beyond, rare pairs are thinned out at random (default 4GiB)")
+      ->transform(CLI::AsSizeValue(true));
   sub.add_option("--emissivity", command->trace.emissivity,
                  "of the particles: total exchange areas of grey surfaces")
       ->check(CLI::Range(1e-6, 1.0));
@@ -53,6 +65,7 @@ void add_trace(CLI::App& app, Body& body) {
       ->check(CLI::Range(0, 4096));
   sub.callback([&body, command, text] {
     command->trace.method = text->method == "lines" ? TraceMethod::lines : TraceMethod::embree;
+    command->trace.sampling = text->sampling == "random" ? Sampling::plain : Sampling::sobol;
     body = [command, text](Verbosity verbosity) {
       if (!text->box.empty()) command->enclosure.box = parse_box(text->box);
       return run_trace(*command, verbosity);

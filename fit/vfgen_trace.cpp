@@ -1,5 +1,8 @@
 #include <fmt/core.h>
 
+#include <functional>
+#include <optional>
+
 #include "dem/scene/error.h"
 #include "dem/scene/program.h"
 #include "fit/vfgen_commands.h"
@@ -22,6 +25,33 @@ void require_surfaces(const Enclosure& enclosure, const std::filesystem::path& s
                                  snapshot.string()));
 }
 
+/// Shows how far a trace is, each round from the start, and stops it at a signal.
+class ShownTrace {
+ public:
+  ShownTrace(std::string what, bool quiet) : what_(std::move(what)), quiet_(quiet) {}
+  bool operator()(double part) {
+    if (!progress_ || part < part_)
+      progress_.emplace(fmt::format("{}, round {}", what_, ++round_), 1.0, quiet_);
+    part_ = part;
+    progress_->update(part);
+    return interrupt_signal() == 0;
+  }
+
+ private:
+  std::string what_;
+  bool quiet_;
+  int round_ = 0;
+  double part_ = 0;
+  std::optional<Progress> progress_;
+};
+
+ViewFactorFile trace_shown(const Enclosure& enclosure, TraceSettings settings, const std::string& snapshot,
+                           bool quiet) {
+  ShownTrace shown("tracing " + snapshot, quiet);
+  settings.watch = std::ref(shown);
+  return trace(enclosure, settings, snapshot);
+}
+
 }  // namespace
 
 int run_trace(const TraceCommand& command, Verbosity verbosity) {
@@ -29,8 +59,6 @@ int run_trace(const TraceCommand& command, Verbosity verbosity) {
     throw InputError(
         fmt::format("--output: {} (view factors are HDF5) name it FILE.h5", command.output.string()));
   std::string failures;
-  Progress progress("tracing", static_cast<double>(command.snapshots.size()),
-                    verbosity.quiet() || command.snapshots.size() == 1);
   for (std::size_t k = 0; k < command.snapshots.size() && !interrupt_signal(); ++k) {
     const auto& snapshot = command.snapshots[k];
     const auto read = read_enclosure(snapshot, command.enclosure);
@@ -38,14 +66,14 @@ int run_trace(const TraceCommand& command, Verbosity verbosity) {
     if (read.left_out > 0)
       fmt::print(stderr, "{}: {} particles with their centre outside the box were left out\n",
                  snapshot.string(), read.left_out);
-    const auto traced = trace(read.enclosure, command.trace, snapshot.string());
+    if (!read.meshes.empty() && !verbosity.quiet()) fmt::print(stderr, "{}\n", read.meshes);
+    const auto traced = trace_shown(read.enclosure, command.trace, snapshot.string(), verbosity.quiet());
     const auto file = numbered(command.output, k + 1, command.snapshots.size());
     write_view_factors(file, traced);
     if (!verbosity.quiet())
-      fmt::print("{}: {} spheres, {} walls; {}\n", file.string(), read.enclosure.sphere_count(),
-                 read.enclosure.walls.size(), self_check_line(traced.check));
+      fmt::print("{}: {} spheres, {} walls; {}\n  {}\n", file.string(), read.enclosure.sphere_count(),
+                 read.enclosure.walls.size(), self_check_line(traced.check), spent_line(traced));
     if (!traced.check.failed.empty()) failures += fmt::format("\n{}: {}", file.string(), traced.check.failed);
-    progress.update(static_cast<double>(k + 1));
   }
   if (!failures.empty()) throw NumericalError("self-check failed:" + failures);
   return exit_ok;

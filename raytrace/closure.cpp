@@ -26,15 +26,16 @@ std::int64_t find(const SparsePattern& p, std::size_t i, std::int32_t j) {
 struct Pair {
   double x_ij = 0, x_ji = 0, v_ij = 0, v_ji = 0, w_i = 0, w_j = 0;
 
-  double merged() const { return w_i + w_j > 0 ? (w_i * x_ij + w_j * x_ji) / (w_i + w_j) : 0; }
-  double merged_variance() const {
-    const double sum = w_i + w_j;
-    return sum > 0 ? (w_i * w_i * v_ij + w_j * w_j * v_ji) / (sum * sum) : 0;
-  }
+  double share_i() const { return w_i + w_j > 0 ? w_i / (w_i + w_j) : 0; }
+  double share_j() const { return w_i + w_j > 0 ? w_j / (w_i + w_j) : 0; }
+  double merged() const { return share_i() * x_ij + share_j() * x_ji; }
+  /// Variance of the merged value, by whose rays it is.
+  double variance_of_i() const { return share_i() * share_i() * v_ij; }
+  double variance_of_j() const { return share_j() * share_j() * v_ji; }
   /// Of x_ij - x_ji when both count the same X: pooled, because a count that came out low also claims a low
   /// variance, and chi^2 from each one's own would exceed 1 for rare pairs.
   double null_variance() const {
-    const double own = v_ij + v_ji, poisson = (x_ij + 0.5 / w_i) / w_i + (x_ji + 0.5 / w_j) / w_j;
+    const double own = v_ij + v_ji, poisson = x_ij / w_i + x_ji / w_j;
     return merged() * (1 / w_i + 1 / w_j) * own / poisson;
   }
 };
@@ -52,8 +53,8 @@ class PairReader {
     if (ij >= 0) p.x_ij = e_.value[ij];
     if (ji >= 0) p.x_ji = e_.value[ji];
     if (!e_.variance.empty()) {
-      p.v_ij = ij >= 0 ? e_.variance[ij] : never_hit(i);
-      p.v_ji = ji >= 0 ? e_.variance[ji] : never_hit(j);
+      if (ij >= 0) p.v_ij = e_.variance[ij];
+      if (ji >= 0) p.v_ji = e_.variance[ji];
     }
     return p;
   }
@@ -64,35 +65,71 @@ class PairReader {
     if (!e_.rays_per_m2.empty()) return e_.rays_per_m2[i];
     return i == open_ && e_.pattern.row_begin[i] == e_.pattern.row_begin[i + 1] ? 0 : 1;
   }
-  /// Half a hit, as the regularised variance of a count has it.
-  double never_hit(std::size_t i) const {
-    const double w = weight(i);
-    return e_.rays_per_m2.empty() || w == 0 ? 0 : 0.5 / (w * w);
-  }
   const ExchangeAreas& e_;
   std::size_t open_;
 };
 
+/// What closure needs to know of the noise of merged pairs. The counts of a row add up to its rays: noise in
+/// a pair (i, j) from the rays of i moves the sum of row j, but that of row i only as far as its pairs are
+/// merged with different weights.
+struct MergedNoise {
+  std::vector<float> of_other;       ///< [nnz] variance of pair (i, j) from the rays of j
+  std::vector<double> row_variance;  ///< [surfaces] of the sum of row i
+  bool symmetric = false;            ///< no rays of either end: all noise of a pair moves both sums
+};
+
+/// Sums over the pairs of one row, for the part of its own rays in the variance of its sum: with shares w_k,
+/// multinomial counts x_k of A in all give sum v_k (1 - (sum w_k x_k)^2 / (A sum w_k^2 x_k)).
+struct OwnRays {
+  double variance = 0, wx = 0, wwx = 0;
+  void add(double share, double x, double v) {
+    variance += v;
+    wx += share * x;
+    wwx += share * share * x;
+  }
+  double of_sum(double area) const {
+    return wwx > 0 ? variance * std::max(0.0, 1 - wx * wx / (area * wwx)) : 0;
+  }
+};
+
 /// Merges the one-way estimates on the symmetrised pattern and reports how far apart they were.
-ExchangeAreas merge(const ExchangeAreas& estimate, ClosureReport& report) {
+ExchangeAreas merge(const ExchangeAreas& estimate, ClosureReport& report, MergedNoise& noise) {
   ExchangeAreas m;
   m.pattern = symmetrized(estimate.pattern);
   m.area_m2 = estimate.area_m2;
   m.value.resize(m.pattern.column.size());
-  if (!estimate.variance.empty()) m.variance.resize(m.value.size());
   const PairReader reader(estimate);
   const std::size_t n = m.area_m2.size();
+  noise.symmetric = reader.symmetric();
+  noise.row_variance.assign(n, 0);
+  if (!estimate.variance.empty()) {
+    m.variance.resize(m.value.size());
+    noise.of_other.resize(m.value.size());
+  }
   std::vector<double> difference2(n, 0), sum2(n, 0), chi2(n, 0);
   std::vector<std::int64_t> compared(n, 0);
 #pragma omp parallel for schedule(dynamic, 64) if (m.value.size() > worth_threads)
-  for (std::size_t i = 0; i < n; ++i)
+  for (std::size_t i = 0; i < n; ++i) {
+    OwnRays own;
     for (std::int64_t k = m.pattern.row_begin[i]; k < m.pattern.row_begin[i + 1]; ++k) {
       const auto j = static_cast<std::size_t>(m.pattern.column[k]);
       const Pair p =
           reader.read(std::min(i, j), std::max(i, j));  // one order: the two halves get the same bits
       m.value[k] = p.merged();
-      if (!m.variance.empty())
-        m.variance[k] = reader.symmetric() ? 0.5 * (p.v_ij + p.v_ji) : p.merged_variance();
+      if (!m.variance.empty() && reader.symmetric()) {
+        m.variance[k] = 0.5 * (p.v_ij + p.v_ji);
+        noise.of_other[k] = static_cast<float>(m.variance[k]);
+        noise.row_variance[i] += m.variance[k];
+      } else if (!m.variance.empty() && i == j) {  // one count, read twice
+        m.variance[k] = p.v_ij;
+        own.add(1, p.x_ij, p.v_ij);
+      } else if (!m.variance.empty()) {
+        m.variance[k] = p.variance_of_i() + p.variance_of_j();
+        const double of_other = i < j ? p.variance_of_j() : p.variance_of_i();
+        noise.of_other[k] = static_cast<float>(of_other);
+        noise.row_variance[i] += of_other;
+        own.add(i < j ? p.share_i() : p.share_j(), i < j ? p.x_ij : p.x_ji, m.variance[k] - of_other);
+      }
       if (j <= i || p.w_i == 0 || p.w_j == 0) continue;
       const double difference = p.x_ij - p.x_ji;
       difference2[i] += difference * difference;
@@ -103,10 +140,16 @@ ExchangeAreas merge(const ExchangeAreas& estimate, ClosureReport& report) {
         ++compared[i];
       }
     }
+    if (m.area_m2[i] > 0) noise.row_variance[i] += own.of_sum(m.area_m2[i]);
+  }
   const auto total = [](const auto& v) { return std::accumulate(v.begin(), v.end(), 0.0); };
   if (total(sum2) > 0) report.reciprocity_defect = std::sqrt(total(difference2) / total(sum2));
   if (total(compared) > 0) report.reciprocity_chi2 = total(chi2) / total(compared);
   return m;
+}
+
+double square(double x) {
+  return x * x;
 }
 
 double row_sum(const ExchangeAreas& x, std::size_t i) {
@@ -156,6 +199,28 @@ std::vector<double> balancing_factors(const ExchangeAreas& x, int& sweeps) {
       fmt::format("closure: row {} stays {:.1e} away from its area after {} sweeps (it sees only "
                   "surfaces that cannot fill it: more rays, or another enclosure)",
                   worst - ratio.begin(), std::abs(*worst - 1), sweeps));
+}
+
+/// Closing to first order: X_ij + e_ij becomes X_ij + e_ij + X_ij (d_i + d_j), d_i = -(noise of the sum of
+/// row i) / A_i. The pair's own noise is in those sums too and partly taken back; that of the other pairs is
+/// new.
+void close_variances(ExchangeAreas& x, const MergedNoise& noise) {
+#pragma omp parallel for schedule(dynamic, 256) if (x.value.size() > worth_threads)
+  for (std::size_t i = 0; i < x.area_m2.size(); ++i)
+    for (std::int64_t k = x.pattern.row_begin[i]; k < x.pattern.row_begin[i + 1]; ++k) {
+      const auto j = static_cast<std::size_t>(x.pattern.column[k]);
+      const double f_ij = closes(x, i) ? std::min(1.0, x.value[k] / x.area_m2[i]) : 0;
+      const double f_ji = closes(x, j) ? std::min(1.0, x.value[k] / x.area_m2[j]) : 0;
+      const double of_j = noise.of_other[k], of_i = noise.symmetric ? of_j : x.variance[k] - of_j;
+      if (i == j) {
+        x.variance[k] += square(2 * f_ij) * noise.row_variance[i];
+        continue;
+      }
+      const double kept = noise.symmetric ? of_j * square(1 - f_ij - f_ji)
+                                          : of_i * square(1 - f_ji) + of_j * square(1 - f_ij);
+      x.variance[k] = kept + f_ij * f_ij * std::max(0.0, noise.row_variance[i] - of_j) +
+                      f_ji * f_ji * std::max(0.0, noise.row_variance[j] - of_i);
+    }
 }
 
 void scale_symmetric(ExchangeAreas& x, ClosureReport& report) {
@@ -211,7 +276,8 @@ ExchangeAreas unmerged(const ExchangeAreas& estimate, const ExchangeAreas& merge
 
 double reciprocity_chi2(const ExchangeAreas& one_way) {
   ClosureReport report;
-  merge(one_way, report);
+  MergedNoise noise;
+  merge(one_way, report, noise);
   return report.reciprocity_chi2;
 }
 
@@ -221,14 +287,17 @@ ExchangeAreas close(const ExchangeAreas& estimate, Closure closure, ClosureRepor
     if (!std::isfinite(value) || value < 0)
       throw NumericalError(
           fmt::format("closure: an exchange area is {} (must be finite and not negative)", value));
-  ExchangeAreas closed = merge(estimate, report);
+  MergedNoise noise;
+  ExchangeAreas closed = merge(estimate, report, noise);
   if (closure == Closure::row_sum) closed = unmerged(estimate, closed);
   require_rows(closed);
   report.closure_defect = closure_defect(closed);
-  if (closure == Closure::reciprocal)
+  if (closure == Closure::reciprocal) {
+    if (!closed.variance.empty()) close_variances(closed, noise);
     scale_symmetric(closed, report);
-  else
+  } else {
     scale_rows(closed, report);
+  }
   reflect_open(closed);
   return closed;
 }

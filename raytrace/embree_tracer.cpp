@@ -43,11 +43,23 @@ struct EmbreeTracer::Impl : TracingGeometry {
   Impl(const Enclosure& enclosure, int threads);
   ~Impl();
 
-  Hit trace(const Vec3& origin, const Vec3& direction, std::int32_t from) const;
+  enum class Met { nothing, ball, cell, facet, back };
+  /// What a ray meets first; `number` of the ball or facet.
+  struct Nearest {
+    Met met;
+    double distance;
+    std::int32_t number;
+  };
+
+  Nearest trace(const Vec3& origin, const Vec3& direction, std::int32_t from, Query& query) const;
   Hit trace_periodic(Vec3 origin, const Vec3& direction, std::int32_t from) const;
   void walk(Query& query, double limit) const;
   bool wall_between_centre_and(const Vec3& origin, std::int32_t sphere, Query& query) const;
-  Hit resolve(const Query& query, const FacetHit& exit, double limit) const;
+  bool starts_behind_wall(const Vec3& origin, std::int32_t from, Query& query) const;
+  Nearest nearest(const Query& query, const FacetHit& exit, double limit) const;
+  End end(const Nearest& n) const;
+  Hit hit(const Nearest& n, const Query& query) const;
+  bool is_periodic() const { return periodic[0] || periodic[1] || periodic[2]; }
   Hit hit_on_facet(const Facets& facets, std::int32_t facet, const Vec3& point, double distance) const;
 
   void attach(std::size_t count, RTCBoundsFunction bounds, RTCIntersectFunctionN intersect);
@@ -241,40 +253,73 @@ Hit EmbreeTracer::Impl::hit_on_facet(const Facets& facets, std::int32_t facet, c
 }
 
 /// The nearest of what the walk through the tree met and the exit of the convex cell.
-Hit EmbreeTracer::Impl::resolve(const Query& query, const FacetHit& exit, double limit) const {
-  const auto at = [&](double t) { return query.origin + t * query.direction; };
+EmbreeTracer::Impl::Nearest EmbreeTracer::Impl::nearest(const Query& query, const FacetHit& exit,
+                                                        double limit) const {
   const double wall = std::min(exit.distance, query.front_distance);
   const double first = std::min(wall, query.ball_distance);
   if (query.back_distance < first - loose_facets->tolerance() && query.back_distance <= limit)
-    return {-1, query.back_distance * unit_m, to_metres(at(query.back_distance)), {}};
-  if (!(first <= limit) || first == infinity) return {open, infinity, {}, {}};
-  if (query.ball_distance < wall || query.ball_depth > 0) {
-    const auto sphere = static_cast<std::size_t>(sphere_of_ball[static_cast<std::size_t>(query.ball)]);
-    const Vec3 n = normalized(at(query.ball_distance) - balls[static_cast<std::size_t>(query.ball)].centre);
-    return {static_cast<std::int32_t>(sphere), query.ball_distance * unit_m,
-            to_metres(balls[sphere].centre + balls[sphere].radius * n), n};
-  }
-  return exit.distance <= query.front_distance ? hit_on_facet(*cell_facets, exit.facet, at(wall), wall)
-                                               : hit_on_facet(*loose_facets, query.facet, at(wall), wall);
+    return {Met::back, query.back_distance, -1};
+  if (!(first <= limit) || first == infinity) return {Met::nothing, infinity, -1};
+  if (query.ball_distance < wall || query.ball_depth > 0) return {Met::ball, query.ball_distance, query.ball};
+  return exit.distance <= query.front_distance ? Nearest{Met::cell, wall, exit.facet}
+                                               : Nearest{Met::facet, wall, query.facet};
 }
 
-Hit EmbreeTracer::Impl::trace(const Vec3& origin, const Vec3& direction, std::int32_t from) const {
-  const bool from_sphere = from >= 0 && from < spheres;
-  if (from_sphere && cut_by_wall[static_cast<std::size_t>(from)]) {
-    Query query;
-    if (wall_between_centre_and(origin, from, query))
-      return hit_on_facet(*loose_facets, query.facet, origin, 0);
+End EmbreeTracer::Impl::end(const Nearest& n) const {
+  const double distance = n.distance * unit_m;
+  switch (n.met) {
+    case Met::back:
+      return {-1, distance};
+    case Met::ball:
+      return {sphere_of_ball[static_cast<std::size_t>(n.number)], distance};
+    case Met::cell:
+      return {spheres + cell_facets->wall(n.number), distance};
+    case Met::facet:
+      return {spheres + loose_facets->wall(n.number), distance};
+    case Met::nothing:
+      break;
   }
-  Query query;
+  return {open, infinity};
+}
+
+Hit EmbreeTracer::Impl::hit(const Nearest& n, const Query& query) const {
+  const auto at = [&] { return query.origin + n.distance * query.direction; };
+  switch (n.met) {
+    case Met::back:
+      return {-1, n.distance * unit_m, to_metres(at()), {}};
+    case Met::ball: {
+      const auto sphere = static_cast<std::size_t>(sphere_of_ball[static_cast<std::size_t>(n.number)]);
+      const Vec3 normal = normalized(at() - balls[static_cast<std::size_t>(n.number)].centre);
+      return {static_cast<std::int32_t>(sphere), n.distance * unit_m,
+              to_metres(balls[sphere].centre + balls[sphere].radius * normal), normal};
+    }
+    case Met::cell:
+      return hit_on_facet(*cell_facets, n.number, at(), n.distance);
+    case Met::facet:
+      return hit_on_facet(*loose_facets, n.number, at(), n.distance);
+    case Met::nothing:
+      break;
+  }
+  return {open, infinity, {}, {}};
+}
+
+/// Whether a wall hides the start of a ray from the centre of the sphere it leaves: `query.facet` is the one.
+bool EmbreeTracer::Impl::starts_behind_wall(const Vec3& origin, std::int32_t from, Query& query) const {
+  return from >= 0 && from < spheres && cut_by_wall[static_cast<std::size_t>(from)] &&
+         wall_between_centre_and(origin, from, query);
+}
+
+EmbreeTracer::Impl::Nearest EmbreeTracer::Impl::trace(const Vec3& origin, const Vec3& direction,
+                                                      std::int32_t from, Query& query) const {
   query.origin = origin;
   query.direction = direction;
-  if (from_sphere)
+  if (from >= 0 && from < spheres)
     query.source_ball = from;
   else if (from >= 0)
     query.source_normal = polygon_normal_of_wall[static_cast<std::size_t>(from - spheres)];
   const FacetHit exit = cell ? cell->exit(*cell_facets, origin, direction) : FacetHit{infinity, -1};
   if (exit.distance > 0) walk(query, exit.distance);
-  return resolve(query, exit, infinity);
+  return nearest(query, exit, infinity);
 }
 
 /// Follows the ray from period to period: the origin is kept inside the box, the image of the sphere it left
@@ -315,10 +360,11 @@ Hit EmbreeTracer::Impl::trace_periodic(Vec3 origin, const Vec3& direction, std::
     else if (from >= 0 && crossing == 0)
       query.source_normal = polygon_normal_of_wall[static_cast<std::size_t>(from - spheres)];
     walk(query, limit);
-    Hit hit = resolve(query, {infinity, -1}, limit);
-    if (hit.surface != open || limit == infinity) {
-      hit.distance_m += travelled * unit_m;
-      return hit;
+    const Nearest found = nearest(query, {infinity, -1}, limit);
+    if (found.met != Met::nothing || limit == infinity) {
+      Hit there = hit(found, query);
+      there.distance_m += travelled * unit_m;
+      return there;
     }
     travelled += limit;
     origin += limit * direction;
@@ -335,8 +381,25 @@ EmbreeTracer::~EmbreeTracer() = default;
 
 Hit EmbreeTracer::first_hit(const Vec3& origin, const Vec3& direction, std::int32_t from) const {
   const Vec3 start = impl_->to_units(origin);
-  const bool periodic = impl_->periodic[0] || impl_->periodic[1] || impl_->periodic[2];
-  return periodic ? impl_->trace_periodic(start, direction, from) : impl_->trace(start, direction, from);
+  if (impl_->is_periodic()) return impl_->trace_periodic(start, direction, from);
+  Query behind;
+  if (impl_->starts_behind_wall(start, from, behind))
+    return impl_->hit_on_facet(*impl_->loose_facets, behind.facet, start, 0);
+  Query query;
+  return impl_->hit(impl_->trace(start, direction, from, query), query);
+}
+
+End EmbreeTracer::first_end(const Vec3& origin, const Vec3& direction, std::int32_t from) const {
+  const Vec3 start = impl_->to_units(origin);
+  if (impl_->is_periodic()) {
+    const Hit hit = impl_->trace_periodic(start, direction, from);
+    return {hit.surface, hit.distance_m};
+  }
+  Query behind;
+  if (impl_->starts_behind_wall(start, from, behind))
+    return {impl_->spheres + impl_->loose_facets->wall(behind.facet), 0};
+  Query query;
+  return impl_->end(impl_->trace(start, direction, from, query));
 }
 
 }  // namespace granrad

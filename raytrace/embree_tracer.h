@@ -14,6 +14,12 @@ struct Hit {
   Vec3 normal;           ///< unit, towards the void
 };
 
+/// Where a ray ends, without the place: all that view factors need.
+struct End {
+  std::int32_t surface;
+  double distance_m;
+};
+
 /// First hits in an enclosure of spheres and walls, by Embree user geometry tested in double precision.
 /// Geometry is recentred and divided by the mean radius before it reaches single precision; planar polygons
 /// are intersected analytically, meshes as ROBUST triangles. The only user of rtcore.h.
@@ -28,6 +34,7 @@ class EmbreeTracer {
   /// A convex surface never hits itself, by identity; a ray that starts inside another sphere hits it at
   /// distance zero; a ray that meets the back of a wall is leaked. Thread-safe.
   Hit first_hit(const Vec3& origin, const Vec3& direction, std::int32_t from) const;
+  End first_end(const Vec3& origin, const Vec3& direction, std::int32_t from) const;
 
  private:
   struct Impl;

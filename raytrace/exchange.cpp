@@ -7,10 +7,11 @@
 namespace granrad {
 
 double count_variance_factor(const HitCounts& counts, std::size_t i, std::int64_t k) {
-  if (!counts.variance_factor.empty()) return counts.variance_factor[i];
-  const auto& by_count = counts.variance_factor_by_count;
+  const auto at = static_cast<std::size_t>(k);
+  const auto& by_count = counts.variance_factor[pair_kind(counts.spheres, static_cast<std::int32_t>(i),
+                                                          counts.pattern.column[at])];
   if (by_count.empty()) return 1;
-  const auto hits = static_cast<std::uint64_t>(std::max<std::int64_t>(counts.hits[k], 1));
+  const auto hits = static_cast<std::uint64_t>(std::max<std::int64_t>(counts.hits[at], 1));
   return by_count[std::min<std::size_t>(std::bit_width(hits) - 1, by_count.size() - 1)];
 }
 
@@ -24,9 +25,9 @@ ExchangeAreas one_way_estimate(const HitCounts& counts) {
     const double n = static_cast<double>(counts.launched[i]), area = counts.area_m2[i];
     estimate.rays_per_m2.push_back(area > 0 ? n / area : 0);
     for (std::int64_t k = counts.pattern.row_begin[i]; k < counts.pattern.row_begin[i + 1]; ++k) {
-      const double hits = static_cast<double>(counts.hits[k]), p = (hits + 0.5) / (n + 1);
+      const double hits = static_cast<double>(counts.hits[k]), missed = std::max(1 - hits / n, 0.5 / (n + 1));
       estimate.value[k] = area * hits / n;
-      estimate.variance[k] = area * area * p * (1 - p) / n * count_variance_factor(counts, i, k);
+      estimate.variance[k] = area * area * hits / (n * n) * missed * count_variance_factor(counts, i, k);
     }
   }
   return estimate;
@@ -51,11 +52,29 @@ ExchangeAreas drop_surfaces(const ExchangeAreas& estimate, const std::vector<cha
   return kept;
 }
 
+namespace {
+
+/// Hits expected on a pair that has still 1 % to be found without any.
+double expected_hits_at_bound(const HitCounts& counts) {
+  const double thinned = counts.thinning_unit > 1 ? 2 * static_cast<double>(counts.thinning_unit) : 0;
+  return -std::log(0.01) + thinned;
+}
+
+}  // namespace
+
+std::vector<double> zero_hit_bound(const HitCounts& counts) {
+  const double expected = expected_hits_at_bound(counts);
+  std::vector<double> bound;
+  for (const std::int64_t n : counts.launched)
+    bound.push_back(n > 0 ? std::min(1.0, expected / static_cast<double>(n)) : 1);
+  return bound;
+}
+
 double zero_hit_bound_m2(const HitCounts& counts, std::size_t i, std::size_t j) {
   const auto density = [&](std::size_t s) {
     return counts.area_m2[s] > 0 ? static_cast<double>(counts.launched[s]) / counts.area_m2[s] : 0;
   };
-  return -std::log(0.01) / (density(i) + density(j));
+  return expected_hits_at_bound(counts) / (density(i) + density(j));
 }
 
 SparsePattern symmetrized(const SparsePattern& pattern) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -20,14 +21,16 @@ struct HitCounts {
   std::vector<std::int64_t> hits;      ///< [nnz]
   std::vector<std::int64_t> launched;  ///< [surfaces]
   std::vector<double> area_m2;         ///< [surfaces]
-  /// Variance of a count relative to binomial, found from independent replicates of low-discrepancy rays:
-  /// either per surface that launches, [surfaces], or by the size of the count, [b] for counts in [2^b,
-  /// 2^(b+1)). Both empty: binomial.
-  std::vector<double> variance_factor, variance_factor_by_count;
-  double wall_sum_variance_factor = 1;  ///< of a particle's sum over all walls and surroundings, to binomial
-  std::int64_t leaked = 0;              ///< rays that met the back of a wall or were lost
-  double mean_chord_m = 0;              ///< area-weighted mean free length of a ray over all surfaces
-  double mean_chord_error_m = 0;        ///< its standard error (binomial sampling)
+  std::int32_t spheres = 0;            ///< surfaces before the walls
+  /// Variance of a count relative to binomial, found from independent replicates of low-discrepancy rays, by
+  /// the kind of pair (pair_kind) and the size of the count: [b] for counts in [2^b, 2^(b+1)), the last one
+  /// also beyond. Empty: binomial.
+  std::array<std::vector<double>, 4> variance_factor;
+  /// The same of a particle's sum over the walls whose error is stated (see StatedQuantity).
+  double sum_variance_factor = 1;
+  std::int64_t leaked = 0;        ///< rays that met the back of a wall or were lost
+  double mean_chord_m = 0;        ///< area-weighted mean free length of a ray over all surfaces
+  double mean_chord_error_m = 0;  ///< its standard error (binomial sampling)
   /// > 1: to respect the memory limit, a pair with h < unit hits was kept with probability h / unit, as
   /// `unit` hits: unbiased, the same draw for both directions of a pair. 1: nothing was thinned.
   std::int64_t thinning_unit = 1;
@@ -44,6 +47,11 @@ struct ExchangeAreas {
   std::vector<double> rays_per_m2{};
 };
 
+/// 0: particle to particle, 1: particle to wall or surroundings, 2: wall to particle, 3: between walls.
+inline std::size_t pair_kind(std::int32_t spheres, std::int32_t from, std::int32_t to) {
+  return (from >= spheres ? 2u : 0u) + (to >= spheres ? 1u : 0u);
+}
+
 /// Variance of counts.hits[k], of surface i, relative to binomial.
 double count_variance_factor(const HitCounts& counts, std::size_t i, std::int64_t k);
 
@@ -58,9 +66,10 @@ struct ClosureReport {
 
 enum class Closure { reciprocal, row_sum };
 
-/// X_ij = A_i hits_ij / launched_i with variance A_i^2 p (1 - p) / n times the count's factor, where p = (h +
-/// 1/2) / (n + 1) so that neither one hit nor n of n claim certainty. One-way estimates: not symmetric, rows
-/// of surfaces without rays empty.
+/// X_ij = A_i hits_ij / launched_i with variance A_i^2 p (1 - p) / n times the count's factor, p = h / n:
+/// right on the mean over pairs, hit or not, so that sums of variances are right; 1 - p is at least 1 / 2(n +
+/// 1), so that n hits of n claim no certainty. One-way estimates: not symmetric, rows of surfaces without
+/// rays empty.
 ExchangeAreas one_way_estimate(const HitCounts& counts);
 
 /// Closes rows.
@@ -69,17 +78,23 @@ ExchangeAreas one_way_estimate(const HitCounts& counts);
 /// 1e-12. Result exactly symmetric. row_sum: the paper's Eq. (norm), row by row; closes, breaks reciprocity;
 /// kept for replication. The last surface, the surroundings, is a black surface of whatever area its row
 /// comes to: it is not scaled, and area_m2.back() of the result is that row sum. Surfaces of area 0 (dropped,
-/// or reflecting everything) stay empty. Variances follow the scaling; that closure itself takes error out of
-/// a row is left out, so they are upper estimates for pairs that dominate a row. Throws NumericalError when
-/// scaling cannot converge (a surface sees nothing, or only surfaces that cannot fill it).
+/// or reflecting everything) stay empty. Variances are carried through to first order: what of a pair's error
+/// closure takes out through the sums of its two rows, and what the other pairs' errors put in. Throws
+/// NumericalError when scaling cannot converge (a surface sees nothing, or only surfaces that cannot fill
+/// it).
 ExchangeAreas close(const ExchangeAreas& estimate, Closure closure, ClosureReport& report);
 
 /// The estimate without the surfaces marked in `dropped` (walls with role `excluded`): what they exchanged is
 /// lost from the rows of the others, and their area becomes 0. To be called before closure.
 ExchangeAreas drop_surfaces(const ExchangeAreas& estimate, const std::vector<char>& dropped);
 
-/// 99 % upper bound of F_ij for a pair that was never hit by n_i rays of i and n_j of j (rule of -ln 0.01):
-/// A_i F_ij <= 4.605 / (n_i / A_i + n_j / A_j).
+/// 99 % upper bound of F_ij of a surface that no ray of its own hit j with: b_i = m / n_i, at most 1, where m
+/// = -ln 0.01 (Poisson), and 2 thinning_unit more where rare pairs were thinned out. 1 for surfaces without
+/// rays.
+std::vector<double> zero_hit_bound(const HitCounts& counts);
+
+/// 99 % upper bound of X_ij of a pair hit from neither end, by the rays of both: m / (n_i / A_i + n_j / A_j);
+/// as F_ij it is 1 / (1 / b_i + (A_i / A_j) / b_j) where both send rays.
 double zero_hit_bound_m2(const HitCounts& counts, std::size_t i, std::size_t j);
 
 /// Reduced chi^2 of X_ij - X_ji over the pairs both of whose ends sent rays; 0 when there are none.

@@ -4,6 +4,13 @@
 
 namespace granrad {
 
+std::int64_t HitTally::hits_on(const std::vector<char>& wanted) const {
+  std::int64_t hits = 0;
+  for (const std::int32_t s : touched_)
+    if (wanted[static_cast<std::size_t>(s)]) hits += current_[static_cast<std::size_t>(s)];
+  return hits;
+}
+
 void HitTally::end_replicate() {
   for (const std::int32_t s : touched_) {
     const auto k = static_cast<std::size_t>(s);

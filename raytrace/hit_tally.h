@@ -18,9 +18,13 @@ class HitTally {
   explicit HitTally(std::size_t surfaces)
       : total_(surfaces, 0), current_(surfaces, 0), square_(surfaces, 0) {}
 
-  void add(std::int32_t surface) {
-    if (current_[static_cast<std::size_t>(surface)]++ == 0) touched_.push_back(surface);
+  void add(std::int32_t surface, std::int32_t hits = 1) {
+    std::int32_t& current = current_[static_cast<std::size_t>(surface)];
+    if (current == 0) touched_.push_back(surface);
+    current += hits;
   }
+  /// Hits of the present replicate on the surfaces marked in `wanted`.
+  std::int64_t hits_on(const std::vector<char>& wanted) const;
   /// Ends one replicate: what was added since the last one counts as one independent estimate.
   void end_replicate();
   /// The entries of the surface just counted, ascending; leaves the tally empty for the next one.

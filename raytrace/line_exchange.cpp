@@ -2,6 +2,8 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <optional>
 
@@ -11,6 +13,7 @@
 #include "raytrace/line_pass.h"
 #include "raytrace/line_plan.h"
 #include "raytrace/line_sweep.h"
+#include "raytrace/stated_error.h"
 
 namespace granrad {
 
@@ -71,6 +74,7 @@ Sweep sweep(const LineScene& scene, const LineOptions& options, int directions) 
   std::int64_t leaked = 0;
   std::vector<ChordSums> chords;
   const int chord_samples = std::min(directions, chord_directions(scene));
+  RayMonitor monitor(options.watch, static_cast<double>(directions) * options.replicates);
 #pragma omp parallel num_threads(threads) reduction(+ : leaked)
   {
     LinePass pass(scene);
@@ -79,6 +83,7 @@ Sweep sweep(const LineScene& scene, const LineOptions& options, int directions) 
       for (int from = 0; from < directions; from += block) {
 #pragma omp for schedule(dynamic)
         for (int k = from; k < std::min(directions, from + block); ++k) {
+          if (!monitor.go_on(1)) continue;
           pass.aim(line_frame(options.seed, replicate, k, directions));
           pass.emit([&](const std::int32_t* p, const std::int32_t* end) { consume_discs(buffer, p, end); },
                     [&](std::int32_t w, const std::int32_t* ids, std::int64_t n) {
@@ -98,6 +103,7 @@ Sweep sweep(const LineScene& scene, const LineOptions& options, int directions) 
     }
     leaked += pass.leaked();
   }
+  monitor.throw_if_stopped();
   SymmetricCounts result = counts.finish();
   std::int64_t ends = 0;
   for (auto c : result.count) ends += c;
@@ -108,29 +114,64 @@ Sweep sweep(const LineScene& scene, const LineOptions& options, int directions) 
           closed ? mean_chord(chords, 0.5 * static_cast<double>(ends), swept) : MeanChord{}, leaked, ends};
 }
 
-/// Standard error of the particles' sums over walls and surroundings, rms relative to their mean.
-double relative_wall_sum_error(const SymmetricCounts& counts, std::size_t spheres) {
-  double variance = 0, sum = 0;
-  for (std::size_t i = 0; i < spheres; ++i)
+/// The stated error, from the variances of pairs as if they were independent.
+double relative_sum_error(const SymmetricCounts& counts, std::size_t spheres,
+                          const StatedQuantity& quantity) {
+  ParticleSums sums{std::vector<double>(spheres, 0), std::vector<double>(spheres, 0), {}};
+  for (std::size_t i = 0; i < spheres; ++i) {
+    double ends = 0;
     for (std::int64_t k = counts.pattern.row_begin[i]; k < counts.pattern.row_begin[i + 1]; ++k)
-      if (static_cast<std::size_t>(counts.pattern.column[k]) >= spheres) {
-        sum += static_cast<double>(counts.count[k]);
-        variance += counts.variance[k];
+      ends += static_cast<double>(counts.count[k]);
+    for (std::int64_t k = counts.pattern.row_begin[i]; k < counts.pattern.row_begin[i + 1]; ++k)
+      if (quantity.counted[static_cast<std::size_t>(counts.pattern.column[k])]) {
+        sums.value[i] += static_cast<double>(counts.count[k]) / ends;
+        sums.variance[i] += counts.variance[k] / (ends * ends);
       }
-  return sum > 0 ? std::sqrt(variance * static_cast<double>(spheres)) / sum : 0;
+  }
+  return sums.relative_error(quantity.relative_to_rms);
 }
 
-Sweep sweep_to_target(const LineScene& scene, const LineOptions& options, LineReport* report) {
-  int directions = options.directions;
+Sweep sweep_to_target(const LineScene& scene, const LineOptions& options, const StatedQuantity& quantity,
+                      LineReport* report) {
+  int directions = options.directions, rounds = 0;
+  std::int64_t ends = 0;
   for (;;) {
     Sweep result = sweep(scene, options, directions);
-    const double error = relative_wall_sum_error(result.counts, scene.x.size());
+    ++rounds;
+    ends += result.ends;
+    const double error = relative_sum_error(result.counts, scene.x.size(), quantity);
     if (options.target_error <= 0 || error <= options.target_error) {
-      if (report) *report = {result.ends, directions, scene.spacing, error, result.counts.thinning_unit};
+      if (report) *report = {ends, directions, scene.spacing, error, result.counts.thinning_unit, rounds};
       return result;
     }
     directions = more_directions(directions, error, options.target_error);
   }
+}
+
+/// Variance factors by kind and size of the count, doubled: both counts of a pair are the same lines, and
+/// merging them must not gain anything.
+std::array<std::vector<double>, 4> variance_factors(const SymmetricCounts& counts, std::int32_t spheres) {
+  constexpr std::size_t sizes = 40;
+  std::array<std::array<double, sizes>, 4> found{}, binomial{};
+  for (std::size_t i = 0; i + 1 < counts.pattern.row_begin.size(); ++i) {
+    double ends = 0;
+    for (std::int64_t k = counts.pattern.row_begin[i]; k < counts.pattern.row_begin[i + 1]; ++k)
+      ends += static_cast<double>(counts.count[k]);
+    for (std::int64_t k = counts.pattern.row_begin[i]; k < counts.pattern.row_begin[i + 1]; ++k) {
+      const double n = static_cast<double>(counts.count[k]);
+      const auto kind = pair_kind(spheres, static_cast<std::int32_t>(i), counts.pattern.column[k]);
+      const auto size =
+          std::min<std::size_t>(std::bit_width(static_cast<std::uint64_t>(counts.count[k])) - 1, sizes - 1);
+      found[kind][size] += 2 * counts.variance[k];
+      binomial[kind][size] += n * (1 - n / ends);
+    }
+  }
+  std::array<std::vector<double>, 4> factor;
+  for (std::size_t kind = 0; kind < 4; ++kind)
+    for (std::size_t size = 0; size < sizes; ++size)
+      factor[kind].push_back(binomial[kind][size] > 0 ? found[kind][size] / binomial[kind][size]
+                                                      : (size > 0 ? factor[kind].back() : 1));
+  return factor;
 }
 
 }  // namespace
@@ -138,7 +179,7 @@ Sweep sweep_to_target(const LineScene& scene, const LineOptions& options, LineRe
 HitCounts sweep_view_factors(const Enclosure& enclosure, const LineOptions& options, LineReport* report) {
   check_line_options(options);
   const LineScene scene(enclosure, options.lines_per_disc);
-  Sweep s = sweep_to_target(scene, options, report);
+  Sweep s = sweep_to_target(scene, options, stated_quantity(enclosure, options.hot_walls), report);
   const SymmetricCounts& counts = s.counts;
   const std::size_t n = scene.surface_count();
   HitCounts hits;
@@ -147,17 +188,14 @@ HitCounts sweep_view_factors(const Enclosure& enclosure, const LineOptions& opti
   hits.mean_chord_m = s.chord.value_m;
   hits.mean_chord_error_m = s.chord.standard_error_m;
   hits.launched.assign(n, 0);
-  hits.variance_factor.assign(n, 1);
+  hits.spheres = static_cast<std::int32_t>(enclosure.sphere_count());
+  hits.variance_factor = variance_factors(counts, hits.spheres);
+  hits.thinning_unit = counts.thinning_unit;
   hits.pattern = counts.pattern;
   hits.hits = counts.count;
-  for (std::size_t i = 0; i < n; ++i) {
-    double variance = 0;
-    for (std::int64_t k = counts.pattern.row_begin[i]; k < counts.pattern.row_begin[i + 1]; ++k) {
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::int64_t k = counts.pattern.row_begin[i]; k < counts.pattern.row_begin[i + 1]; ++k)
       hits.launched[i] += counts.count[k];
-      variance += counts.variance[k];
-    }
-    if (hits.launched[i] > 0) hits.variance_factor[i] = 2 * variance / static_cast<double>(hits.launched[i]);
-  }
   const auto open_row = static_cast<std::size_t>(hits.pattern.row_begin[n - 1]);
   hits.pattern.column.resize(open_row), hits.hits.resize(open_row);
   hits.pattern.row_begin[n] = hits.pattern.row_begin[n - 1];
@@ -169,7 +207,7 @@ ExchangeAreas sweep_exchange_areas(const Enclosure& enclosure, const LineOptions
                                    LineReport* report) {
   check_line_options(options);
   const LineScene scene(enclosure, options.lines_per_disc);
-  Sweep s = sweep_to_target(scene, options, report);
+  Sweep s = sweep_to_target(scene, options, stated_quantity(enclosure, options.hot_walls), report);
   ExchangeAreas areas;
   areas.area_m2 = surface_areas(enclosure);
   areas.pattern = std::move(s.counts.pattern);

@@ -115,7 +115,10 @@ SelfCheck self_check(const Enclosure& enclosure, const HitCounts& counts) {
   const auto fail = [&](const std::string& what) {
     check.failed += (check.failed.empty() ? "" : "; ") + what;
   };
-  if (counts.leaked > 0) fail(fmt::format("{} rays leaked through walls", counts.leaked));
+  if (counts.leaked > 0)
+    fail(fmt::format(
+        "{} rays leaked through walls (they met the back of one: normals must point to the particles)",
+        counts.leaked));
   if (counts.thinning_unit == 1 && counts.leaked == 0 && check.closure_defect > 0)
     fail(fmt::format("a fraction {:.2e} of the rays was lost", check.closure_defect));
   const double pairs = static_cast<double>(compared_pairs(counts));

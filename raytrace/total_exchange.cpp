@@ -5,7 +5,7 @@
 #include "dem/scene/error.h"
 #include "dem/scene/random.h"
 #include "raytrace/embree_tracer.h"
-#include "raytrace/ray_rows.h"
+#include "raytrace/error_target.h"
 
 namespace granrad {
 
@@ -62,18 +62,18 @@ class Bundle {
 }  // namespace
 
 HitCounts trace_total_exchange(const Enclosure& enclosure, const std::vector<double>& emissivity,
-                               const TraceOptions& options) {
+                               const TraceOptions& options, TraceReport* report) {
   require_emissivities(enclosure, emissivity);
   std::vector<double> emitting_area = surface_areas(enclosure);
   for (std::size_t i = 0; i < emitting_area.size(); ++i) emitting_area[i] *= emissivity[i];
   if (std::all_of(emitting_area.begin(), emitting_area.end(), [](double a) { return a == 0; }))
     throw InputError("emissivity: zero everywhere (nothing emits; give a surface a positive one)");
   const EmbreeTracer tracer(enclosure, options.threads);
-  const auto rays = rays_per_surface(enclosure, emitting_area, options.rays_per_particle);
-  return trace_rows(enclosure, emitting_area, rays, options, [&](const EmittedRay& ray) {
+  const auto follow = [&](const EmittedRay& ray) {
     const Hit hit = tracer.first_hit(ray.start.origin_m, ray.start.direction, ray.surface);
     return RayEnd{Bundle(tracer, emissivity, options.seed, ray).absorbed_by(hit), hit.distance_m};
-  });
+  };
+  return trace_to_target(enclosure, emitting_area, options, follow, report);
 }
 
 }  // namespace granrad

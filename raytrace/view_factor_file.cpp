@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 #include "dem/scene/error.h"
@@ -15,6 +16,9 @@ namespace {
 constexpr const char* format_name = "granrad.view_factors";
 constexpr std::int64_t format_version = 1;
 constexpr const char* periodic_name[3] = {"periodic_x", "periodic_y", "periodic_z"};
+/// In the order of pair_kind.
+constexpr std::array<const char*, 4> pair_kind_names = {"particle_particle", "particle_wall", "wall_particle",
+                                                        "wall_wall"};
 constexpr std::int32_t kind_particle = 0, kind_wall = 1, kind_open = 2;
 
 template <class T>
@@ -56,7 +60,7 @@ void write_surfaces(Hdf5Writer& out, const ViewFactorFile& content, const std::v
   out.write("/surfaces/emissivity", content.emissivity.empty() ? black : content.emissivity);
 }
 
-void write_factors(Hdf5Writer& out, const ExchangeAreas& closed) {
+void write_factors(Hdf5Writer& out, const ExchangeAreas& closed, const std::vector<double>& bound) {
   std::vector<double> value(closed.value.size()), error(closed.value.size(), 0);
   for (std::size_t i = 0; i < closed.area_m2.size(); ++i)
     for (auto k = closed.pattern.row_begin[i]; k < closed.pattern.row_begin[i + 1]; ++k) {
@@ -69,6 +73,7 @@ void write_factors(Hdf5Writer& out, const ExchangeAreas& closed) {
   write_some(out, "/view_factors/column", closed.pattern.column);
   write_some(out, "/view_factors/value", value);
   write_some(out, "/view_factors/standard_error", error);
+  out.write("/view_factors/zero_hit_bound", bound);
 }
 
 void write_rays(Hdf5Writer& out, const HitCounts& counts) {
@@ -76,11 +81,12 @@ void write_rays(Hdf5Writer& out, const HitCounts& counts) {
   out.write("/rays/row_begin", counts.pattern.row_begin);
   write_some(out, "/rays/column", counts.pattern.column);
   write_some(out, "/rays/hits", counts.hits);
-  write_some(out, "/rays/variance_factor", counts.variance_factor);
-  write_some(out, "/rays/variance_factor_by_count", counts.variance_factor_by_count);
+  for (std::size_t kind = 0; kind < pair_kind_names.size(); ++kind)
+    write_some(out, fmt::format("/rays/variance_factor/{}", pair_kind_names[kind]),
+               counts.variance_factor[kind]);
   out.attribute("/rays", "leaked", std::vector<std::int64_t>{counts.leaked});
   out.attribute("/rays", "thinning_unit", std::vector<std::int64_t>{counts.thinning_unit});
-  out.attribute("/rays", "wall_sum_variance_factor", counts.wall_sum_variance_factor);
+  out.attribute("/rays", "sum_variance_factor", counts.sum_variance_factor);
   out.attribute("/rays", "mean_chord_m", counts.mean_chord_m);
   out.attribute("/rays", "mean_chord_error_m", counts.mean_chord_error_m);
 }
@@ -134,6 +140,29 @@ void write_origin(Hdf5Writer& out, const ViewFactorFile& content) {
   out.attribute("/", "failed", content.check.failed);
 }
 
+void write_spent(Hdf5Writer& out, const ViewFactorFile& content) {
+  out.group("/spent");
+  out.attribute("/spent", "sampling", content.sampling);
+  out.attribute("/spent", "rays", std::vector<std::int64_t>{content.spent.rays});
+  out.attribute("/spent", "rounds", std::vector<std::int64_t>{content.spent.rounds});
+  out.attribute("/spent", "seconds", content.spent.seconds);
+  out.attribute("/spent", "stated",
+                std::string(content.hot_walls.empty() ? "particle_wall_sums" : "particle_fluxes"));
+  out.attribute("/spent", "hot_walls", content.hot_walls);
+  out.attribute("/spent", "error", content.spent.error);
+  out.attribute("/spent", "error_target", content.error_target);
+}
+
+void read_spent(const Hdf5Reader& in, ViewFactorFile& content) {
+  content.sampling = in.text_attribute("/spent", "sampling");
+  content.spent.rays = in.integer_attribute("/spent", "rays");
+  content.spent.rounds = static_cast<int>(in.integer_attribute("/spent", "rounds"));
+  content.spent.seconds = in.real_attribute("/spent", "seconds");
+  content.spent.error = in.real_attribute("/spent", "error");
+  content.error_target = in.real_attribute("/spent", "error_target");
+  content.hot_walls = in.text_attribute("/spent", "hot_walls");
+}
+
 WallRole role_of(const std::string& text) {
   for (const auto role : {WallRole::isothermal, WallRole::adiabatic, WallRole::open, WallRole::excluded})
     if (text == to_string(role)) return role;
@@ -183,11 +212,12 @@ HitCounts read_rays(const Hdf5Reader& in) {
   counts.pattern.row_begin = in.read<std::int64_t>("/rays/row_begin");
   counts.pattern.column = read_some<std::int32_t>(in, "/rays/column");
   counts.hits = read_some<std::int64_t>(in, "/rays/hits");
-  counts.variance_factor = read_some<double>(in, "/rays/variance_factor");
-  counts.variance_factor_by_count = read_some<double>(in, "/rays/variance_factor_by_count");
+  for (std::size_t kind = 0; kind < pair_kind_names.size(); ++kind)
+    counts.variance_factor[kind] =
+        read_some<double>(in, fmt::format("/rays/variance_factor/{}", pair_kind_names[kind]));
   counts.leaked = in.integer_attribute("/rays", "leaked");
   counts.thinning_unit = in.integer_attribute("/rays", "thinning_unit");
-  counts.wall_sum_variance_factor = in.real_attribute("/rays", "wall_sum_variance_factor");
+  counts.sum_variance_factor = in.real_attribute("/rays", "sum_variance_factor");
   counts.mean_chord_m = in.real_attribute("/rays", "mean_chord_m");
   counts.mean_chord_error_m = in.real_attribute("/rays", "mean_chord_error_m");
   return counts;
@@ -216,10 +246,11 @@ void write_view_factors(const std::filesystem::path& file, const ViewFactorFile&
   area.back() = content.closed.area_m2.back();
   Hdf5Writer out(file);
   write_surfaces(out, content, area);
-  write_factors(out, content.closed);
+  write_factors(out, content.closed, zero_hit_bound(content.counts));
   write_rays(out, content.counts);
   write_snapshot(out, content);
   write_origin(out, content);
+  write_spent(out, content);
   out.commit();
 }
 
@@ -239,6 +270,7 @@ ViewFactorFile read_view_factors(const std::filesystem::path& file) {
   for (std::size_t i = 0; i < area.size(); ++i) area[i] *= content.emissivity[i];
   content.closed = read_closed(in, area);
   content.counts.area_m2 = area;
+  content.counts.spheres = static_cast<std::int32_t>(content.enclosure.sphere_count());
   content.counts.area_m2.back() = 0;
   content.method = in.text_attribute("/", "method");
   content.seed = static_cast<std::uint64_t>(in.integer_attribute("/", "seed"));
@@ -250,6 +282,7 @@ ViewFactorFile read_view_factors(const std::filesystem::path& file) {
   content.check.mean_chord_ratio = in.real_attribute("/", "mean_chord_ratio");
   content.check.failed = in.text_attribute("/", "failed");
   content.check.leaked = content.counts.leaked;
+  read_spent(in, content);
   return content;
 }
 

@@ -15,11 +15,16 @@ namespace granrad {
 ///   /surfaces/kind [N] int32 (0 particle, 1 wall, 2 open), /area [N] m^2, /name [N] text, /emissivity [N];
 ///   /view_factors/row_begin [N+1] int64, /column [nnz] int32, /value [nnz] closed F_ij (grey: absorbed
 ///   fraction D_ij),
-///     /standard_error [nnz];
+///     /standard_error [nnz], /zero_hit_bound [N] 99 % upper bound of every F_ij that is not listed
+///     (exchange.h);
 ///   /rays/launched [N] int64, /row_begin [N+1] int64, /column [m] int32, /hits [m] int64 raw counts, before
 ///   closure,
-///     /variance_factor [N] or /variance_factor_by_count [b] where sampling is not plain (see HitCounts);
-///     attributes leaked, thinning_unit, wall_sum_variance_factor, mean_chord_m, mean_chord_error_m;
+///     /variance_factor/particle_particle, particle_wall, wall_particle, wall_wall [b] where sampling is not
+///     plain (see HitCounts); attributes leaked, thinning_unit, sum_variance_factor, mean_chord_m,
+///     mean_chord_error_m;
+///   /spent: attributes sampling (sobol, random, lines), rays, rounds, seconds (TraceReport); stated
+///     (particle_wall_sums or particle_fluxes, of the walls named in hot_walls, see stated_error.h), error
+///     reached, error_target (0: rays were asked for);
 ///   /snapshot: what distances are computed from: /centre [n,3] m, /radius [n] m, /particle [n] int32 (place
 ///   in the
 ///     bed), /wall_vertex [v,3] m with /wall_vertex_begin [W+1], /wall_triangle [t,3] int32 with
@@ -34,6 +39,9 @@ struct ViewFactorFile {
   ExchangeAreas closed;            ///< A_i F_ij; for grey surfaces epsilon_i A_i D_ij
   std::vector<double> emissivity;  ///< by surface; empty for view factors (1)
   SelfCheck check;
+  TraceReport spent;
+  double error_target = 0;
+  std::string sampling = "sobol", hot_walls;  ///< hot walls: names separated by commas
   std::string method = "embree", origin;
   std::uint64_t seed = 1;
   Closure closure = Closure::reciprocal;

@@ -47,7 +47,7 @@ int run_program(const std::string& name, const std::function<int()>& body) {
     return interrupt_signal() ? 128 + interrupt_signal() : code;
   } catch (const Error& error) {
     fmt::print(stderr, "{}\n", error.what());
-    return error.exit_code();
+    return interrupt_signal() ? 128 + interrupt_signal() : error.exit_code();
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "{}: out of memory\n", name);
     return exit_numerical_failure;

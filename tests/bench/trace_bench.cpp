@@ -19,6 +19,7 @@
 #include "dem/packing.h"
 #include "dem/scene/constants.h"
 #include "dem/scene/error.h"
+#include "raytrace/embree_tracer.h"
 #include "raytrace/emission.h"
 #include "raytrace/line_directions.h"
 #include "raytrace/line_pass.h"
@@ -400,6 +401,7 @@ class Book {
     lines_.push_back(fmt::format("{} ours {:.4g} {} {} {:.4g} {} ratio {:.3g}", what, ours, unit, peer,
                                  theirs, unit, less_is_better ? theirs / ours : ours / theirs));
   }
+  void note(const std::string& line) { lines_.push_back(line); }
   void point(const std::string& method, double seconds_per_particle, double error) {
     points_.push_back({seconds_per_particle, error, method});
   }
@@ -519,6 +521,49 @@ double measure(Book& book, const Case& c) {
   return pairs.seconds / pairs.rays;
 }
 
+/// The same rays, from the particles and in the order a trace sends them, followed by both tracers: rates of
+/// the first hits alone and the number of rays they disagree on; then the rate of a whole trace, with the
+/// making of its rays and the counting of its hits.
+void per_ray(Book& book, const Case& c) {
+  const auto rays = static_cast<std::int64_t>(std::max(8.0, 1e6 / static_cast<double>(c.count)));
+  const BareEmbree bare(c.bed);
+  const EmbreeTracer ours(c.bed, 1);
+  const Emitter emitter(c.bed);
+  std::vector<Emission> starts;
+  std::vector<std::int32_t> from;
+  const auto spheres = std::min<std::size_t>(c.count, 100000);
+  for (std::size_t i = 0; i < spheres; ++i) {
+    const auto surface = static_cast<std::int32_t>(i);
+    const RaySampler sampler(Sampling::sobol, 1, surface, 0);
+    for (std::int64_t k = 0; k < rays; ++k) {
+      const auto u = sampler(static_cast<std::uint64_t>(k));
+      starts.push_back(emitter.emit(surface, u[0], u[1], u[2], u[3]));
+      from.push_back(surface);
+    }
+  }
+  std::vector<std::int64_t> bare_end(starts.size()), our_end(starts.size());
+  double bare_s = 1e300, our_s = 1e300, trace_s = 1e300, traced = 0;
+  for (int repeat = 0; repeat < 3; ++repeat) {
+    const double start = cpu_seconds();
+    for (std::size_t k = 0; k < starts.size(); ++k)
+      bare_end[k] = bare.hit(static_cast<std::size_t>(from[k]), starts[k]);
+    const double middle = cpu_seconds();
+    for (std::size_t k = 0; k < starts.size(); ++k)
+      our_end[k] = ours.first_end(starts[k].origin_m, starts[k].direction, from[k]).surface;
+    const double end = cpu_seconds();
+    bare_s = std::min(bare_s, middle - start), our_s = std::min(our_s, end - middle);
+    const Result whole = embree_sobol(c, static_cast<double>(rays), 1);
+    trace_s = std::min(trace_s, whole.seconds), traced = whole.rays;
+  }
+  std::int64_t differ = 0;
+  for (std::size_t k = 0; k < starts.size(); ++k) differ += bare_end[k] != our_end[k];
+  const double n = 1e-6 * static_cast<double>(starts.size());
+  book.versus(c.name() + "/embree_per_ray", n / our_s, "embree", n / bare_s, "Mray/s", false);
+  book.versus(c.name() + "/embree_whole_trace", 1e-6 * traced / trace_s, "embree", n / bare_s, "Mray/s",
+              false);
+  book.note(fmt::format("{}/embree_per_ray: {} of {} rays end elsewhere", c.name(), differ, starts.size()));
+}
+
 void two_threads(Book& book, const Case& c) {
   const int directions = directions_for(c.count, 2e7);
   double best[2] = {1e300, 1e300};
@@ -539,12 +584,13 @@ int run(const std::string& folder, bool quick) {
     double at_3600 = 0;
     for (const std::size_t count : counts) {
       const Case c = make_case(count, fraction);
-      const double per_ray = measure(book, c);
+      const double pairs_s = measure(book, c);
+      per_ray(book, c);
       if (count == 3600) {
-        at_3600 = per_ray;
+        at_3600 = pairs_s;
         two_threads(book, c);
       }
-      if (count > 3600) book.versus(c.name() + "/pairs_per_particle", per_ray, "N3600", at_3600, "s", true);
+      if (count > 3600) book.versus(c.name() + "/pairs_per_particle", pairs_s, "N3600", at_3600, "s", true);
     }
   }
   book.finish();

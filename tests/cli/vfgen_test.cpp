@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "dem/scene/hdf5_file.h"
 #include "raytrace/exact.h"
 #include "raytrace/view_factor_file.h"
 
@@ -20,15 +21,19 @@ struct Outcome {
   std::string text;  ///< stdout and stderr
 };
 
-Outcome vfgen(const std::string& arguments) {
+Outcome run(const std::string& command) {
   Outcome outcome;
-  std::FILE* pipe = popen((std::string(VFGEN) + " " + arguments + " 2>&1").c_str(), "r");
+  std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
   std::array<char, 4096> buffer;
   while (const auto n = std::fread(buffer.data(), 1, buffer.size(), pipe))
     outcome.text.append(buffer.data(), n);
   const int status = pclose(pipe);
   outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return outcome;
+}
+
+Outcome vfgen(const std::string& arguments) {
+  return run(std::string(VFGEN) + " " + arguments);
 }
 
 class Vfgen : public testing::Test {
@@ -74,6 +79,15 @@ TEST_F(Vfgen, RefusesBadUsageWithCode2) {
   expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --rays 0"), 2, "--rays");
   expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --rays 10 --error 0.1"), 2, "excludes");
   expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --emissivity 1.4"), 2, "--emissivity");
+  expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --sampling halton"), 2, "sobol");
+  expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --memory much"), 2, "--memory");
+  expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --memory 1KiB"), 2, "at least");
+  expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --hot-walls y_min"), 2, "add --box");
+  expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --box 0.01,0.01,0.01 --hot-walls left,y_min"),
+              2, "left (no such wall; there are: x_min, x_max, y_min");
+  expect_says(vfgen("trace " + csv + " -o " + path("x.h5") +
+                    " --box 0.01,0.01,0.01 --method lines --sampling random"),
+              2, "--method embree");
   expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --box 1,2"), 2, "X,Y,Z");
   expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --box 1,2,x"), 2, "X,Y,Z");
   expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --box 1,2,-3"), 2, "positive");
@@ -126,6 +140,86 @@ TEST_F(Vfgen, TracesTwoSpheresInABox) {
   const double found = file.closed.value[file.closed.pattern.row_begin[0]] / file.closed.area_m2[0];
   EXPECT_EQ(file.closed.pattern.column[file.closed.pattern.row_begin[0]], 1);
   EXPECT_NEAR(found, exact, 4 * std::sqrt(exact / 2e5));
+}
+
+TEST_F(Vfgen, SaysWhatAnErrorCost) {
+  const auto csv = two_spheres();
+  for (const char* method : {"embree", "lines"}) {
+    const auto outcome =
+        vfgen("trace " + csv + " -o " + path("e.h5") +
+              " --error 0.03 --hot-walls y_min,y_max --box 0.01,0.004,0.004 --method " + method);
+    expect_says(outcome, 0, "of the particle fluxes from y_min,y_max (3 % asked for)");
+    EXPECT_EQ(outcome.text.find('\r'), std::string::npos);
+    const auto file = granrad::read_view_factors(path("e.h5"));
+    EXPECT_LE(file.spent.error, 0.03);
+    EXPECT_GT(file.spent.error, 0);
+    EXPECT_GT(file.spent.rays, 0);
+    EXPECT_GE(file.spent.rounds, 1);
+    EXPECT_EQ(file.error_target, 0.03);
+    EXPECT_EQ(file.hot_walls, "y_min,y_max");
+    EXPECT_EQ(file.sampling, method == std::string("lines") ? "lines" : "sobol");
+    const granrad::Hdf5Reader raw(path("e.h5"));
+    const auto bound = raw.read<double>("/view_factors/zero_hit_bound");
+    EXPECT_EQ(bound, granrad::zero_hit_bound(file.counts));
+    EXPECT_EQ(bound.back(), 1);  // the surroundings send no rays
+  }
+  expect_says(vfgen("trace " + csv + " -o " + path("r.h5") + " --rays 200 --sampling random"), 0, "spent");
+  EXPECT_EQ(granrad::read_view_factors(path("r.h5")).sampling, "random");
+}
+
+/// A box of 10 x 4 x 4 mm as an STL of two solids; inward normals, each solid turned round on demand.
+std::string box_stl(bool turn_sides, bool turn_ends, bool without_first) {
+  const double x = 0.01, y = 0.004, z = 0.004;
+  const std::vector<std::array<std::array<double, 3>, 4>> faces = {
+      {{{0, 0, 0}, {0, y, 0}, {0, y, z}, {0, 0, z}}}, {{{x, 0, 0}, {x, 0, z}, {x, y, z}, {x, y, 0}}},
+      {{{0, 0, 0}, {0, 0, z}, {x, 0, z}, {x, 0, 0}}}, {{{0, y, 0}, {x, y, 0}, {x, y, z}, {0, y, z}}},
+      {{{0, 0, 0}, {x, 0, 0}, {x, y, 0}, {0, y, 0}}}, {{{0, 0, z}, {0, y, z}, {x, y, z}, {x, 0, z}}}};
+  std::ostringstream text;
+  for (std::size_t f = 0; f < 6; ++f) {
+    if (f == 0) text << "solid sides\n";
+    if (f == 4) text << "endsolid sides\nsolid ends\n";
+    for (std::size_t t = without_first && f == 0 ? 1 : 0; t < 2; ++t) {
+      std::array<std::size_t, 3> corner{0, t + 1, t + 2};
+      if (f < 4 ? turn_sides : turn_ends) std::swap(corner[0], corner[2]);
+      text << "facet normal 0 0 0\nouter loop\n";
+      for (const auto c : corner)
+        text << "vertex " << faces[f][c][0] << ' ' << faces[f][c][1] << ' ' << faces[f][c][2] << '\n';
+      text << "endloop\nendfacet\n";
+    }
+  }
+  text << "endsolid ends\n";
+  return text.str();
+}
+
+TEST_F(Vfgen, TellsHowAnStlFitsTogether) {
+  const auto traced = [&](bool turn_sides, bool turn_ends, bool without_first) {
+    const auto stl = write("box.stl", box_stl(turn_sides, turn_ends, without_first));
+    return vfgen("trace " + two_spheres() + " -o " + path("x.h5") + " --rays 1000 --walls " + stl);
+  };
+  expect_says(traced(false, false, false), 0, "12 triangles, closed, normals inward");
+  const auto file = granrad::read_view_factors(path("x.h5"));
+  ASSERT_EQ(file.enclosure.walls.size(), 2u);  // each solid is a wall, with rays in proportion to its area
+  EXPECT_EQ(file.enclosure.walls[0].name, "walls.sides");
+  EXPECT_EQ(file.enclosure.walls[1].name, "walls.ends");
+  const auto density = [&](std::size_t i) {
+    return static_cast<double>(file.counts.launched[i]) / file.counts.area_m2[i];
+  };
+  EXPECT_NEAR(density(2) / density(0), 1, 0.03);  // whole rays for each of 32 replicates
+  EXPECT_NEAR(density(3) / density(0), 1, 0.03);
+  expect_says(traced(false, false, true), 0, "not closed (3 open edges");
+  expect_says(traced(true, true, false), 1, "normals outward");
+  expect_says(traced(false, true, false), 1, "triangles face opposite sides across 8 edges");
+  expect_says(traced(false, true, false), 1, "normals must point to the particles");
+}
+
+// A minute of rays, interrupted after a second.
+TEST_F(Vfgen, InterruptLeavesNoFile) {
+  const auto outcome = run("timeout -s INT 1 " + std::string(VFGEN) + " trace " + two_spheres() + " -o " +
+                           path("x.h5") + " --rays 3e7 --box 0.01,0.004,0.004");
+  EXPECT_NE(outcome.text.find("nothing was kept"), std::string::npos) << outcome.text;
+  std::size_t files = 0;
+  for (const auto& entry : fs::directory_iterator(folder_)) files += entry.path().extension() != ".csv";
+  EXPECT_EQ(files, 0u);
 }
 
 TEST_F(Vfgen, NumbersTheFilesOfSeveralSnapshots) {

@@ -96,35 +96,5 @@ TEST(TotalExchange, RefusesWhatIsNotAnEmissivity) {
   EXPECT_THROW(trace_total_exchange(e, std::vector<double>(e.surface_count(), 0), options()), InputError);
 }
 
-TEST(TargetError, IsReachedAndSpentWhereTheErrorIs) {
-  const Enclosure e = small_bed();
-  TraceOptions o = options();
-  for (const auto sampling : {Sampling::plain, Sampling::sobol}) {
-    o.sampling = sampling;
-    o.target_error = 0.01;
-    const HitCounts counts = trace_view_factors(e, o);
-    EXPECT_LE(wall_sum_error(e, counts), 0.01);
-    EXPECT_GT(wall_sum_error(e, counts), 0.005);
-    o.seed = 99;  // the error against many rays is what was promised
-    TraceOptions many = o;
-    many.target_error = 0;
-    many.rays_per_particle = 60000;
-    const HitCounts truth = trace_view_factors(e, many);
-    double off2 = 0, mean = 0, rays = 0;
-    for (std::size_t i = 0; i < e.sphere_count(); ++i) {
-      double difference = 0;
-      for (std::size_t w = e.sphere_count(); w < e.surface_count(); ++w) {
-        difference += factor(counts, i, w) - factor(truth, i, w);
-        mean += factor(truth, i, w) / static_cast<double>(e.sphere_count());
-      }
-      off2 += difference * difference / static_cast<double>(e.sphere_count());
-      rays += static_cast<double>(counts.launched[i]) / static_cast<double>(e.sphere_count());
-    }
-    std::printf("target 1 %%: stated %.4f, found %.4f, %.0f rays per particle\n", wall_sum_error(e, counts),
-                std::sqrt(off2) / mean, rays);
-    EXPECT_NEAR(std::sqrt(off2) / mean, wall_sum_error(e, counts), 4 * 0.01 / std::sqrt(2.0 * 60));
-  }
-}
-
 }  // namespace
 }  // namespace granrad

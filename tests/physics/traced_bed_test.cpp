@@ -102,8 +102,10 @@ TEST(RealBed, StatedErrorsMatchASecondSeed) {
     }
   std::printf("chi2: near %.3f (%.0f) far %.3f (%.0f) walls %.3f (%.0f)\n", near.chi2 / near.n, near.n,
               far.chi2 / far.n, far.n, wall.chi2 / wall.n, wall.n);
-  for (const double f : real_counts().variance_factor_by_count) std::printf("%.3f ", f);
-  std::printf("\n");
+  for (const auto& kind : real_counts().variance_factor) {
+    for (const double f : kind) std::printf("%.3f ", f);
+    std::printf("\n");
+  }
   EXPECT_NEAR(near.chi2 / near.n, 1, 0.3);
   EXPECT_NEAR(far.chi2 / far.n, 1, 0.25);
   EXPECT_NEAR(wall.chi2 / wall.n, 1, 0.4);
@@ -119,7 +121,7 @@ TEST(RealBed, SameBitsForAnyThreadCount) {
   EXPECT_EQ(one.hits, three.hits);
   EXPECT_EQ(one.pattern.column, three.pattern.column);
   EXPECT_EQ(one.mean_chord_m, three.mean_chord_m);
-  EXPECT_EQ(one.variance_factor_by_count, three.variance_factor_by_count);
+  EXPECT_EQ(one.variance_factor, three.variance_factor);
 }
 
 TEST(ViewFactorFile, GivesBackWhatWasWritten) {
@@ -140,7 +142,7 @@ TEST(ViewFactorFile, GivesBackWhatWasWritten) {
   EXPECT_EQ(back.counts.hits, content.counts.hits);
   EXPECT_EQ(back.counts.pattern.row_begin, content.counts.pattern.row_begin);
   EXPECT_EQ(back.counts.area_m2, content.counts.area_m2);
-  EXPECT_EQ(back.counts.variance_factor_by_count, content.counts.variance_factor_by_count);
+  EXPECT_EQ(back.counts.variance_factor, content.counts.variance_factor);
   EXPECT_EQ(back.closed.pattern.column, content.closed.pattern.column);
   for (std::size_t k = 0; k < back.closed.value.size(); ++k) {
     ASSERT_NEAR(back.closed.value[k], content.closed.value[k], 1e-15 * content.closed.value[k]);

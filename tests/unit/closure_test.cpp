@@ -83,7 +83,7 @@ TEST(Closure, PairsAreWeighedByRaysPerArea) {
   const ExchangeAreas x = close(e, Closure::reciprocal, report);
   EXPECT_NEAR(report.closure_defect, 0.02, 1e-12);  // merged to 0.1 * 1.2 + 0.9 * 1.0
   EXPECT_NEAR(value(x, 0, 1), 1, 1e-12);
-  EXPECT_NEAR(x.variance[0], (0.01 * 0.01 + 0.81 * 0.001) / (1.02 * 1.02), 1e-12);
+  EXPECT_NEAR(x.variance[0], 0, 1e-10);  // two surfaces that see only each other: closure knows the answer
 }
 
 TEST(Closure, RowSumClosesButBreaksReciprocity) {
