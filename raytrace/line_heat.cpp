@@ -34,6 +34,7 @@ using Sums = std::vector<std::int64_t>;
 std::vector<Sums> sweep(const LineScene& scene, const std::vector<std::int32_t>& power,
                         const LineOptions& options, int directions) {
   std::vector<Sums> total(options.replicates, Sums(scene.surface_count(), 0));
+  const std::vector<std::int32_t> sorted_power = scene.sorted(power);
 #pragma omp parallel num_threads(line_threads(options.threads))
   {
     LinePass pass(scene);
@@ -43,12 +44,13 @@ std::vector<Sums> sweep(const LineScene& scene, const std::vector<std::int32_t>&
 #pragma omp for schedule(dynamic) nowait
       for (int k = 0; k < directions; ++k) {
         pass.aim(line_frame(options.seed, replicate, k, directions));
-        pass.receive(power, own.data());
+        pass.receive(sorted_power, own.data());
       }
 #pragma omp critical
       for (std::size_t i = 0; i < own.size(); ++i) total[replicate][i] += own[i];
     }
   }
+  for (Sums& sums : total) sums = scene.by_surface(sums);
   return total;
 }
 

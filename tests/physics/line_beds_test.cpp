@@ -127,8 +127,8 @@ Retraced retrace(const Enclosure& e, std::int64_t enough_lines) {
     const LineFrame& f = pass.frame();
     const LineLattice& l = pass.lattice();
     const auto check = [&](std::int32_t to, std::int64_t cell, std::int32_t from) {
-      const double u = (static_cast<double>(cell % l.pitch) + l.origin_u) * scene.spacing;
-      const double v = (static_cast<double>(cell / l.pitch) + l.origin_v) * scene.spacing;
+      const double u = (pass.column(cell) + l.origin_u) * scene.spacing;
+      const double v = (pass.row(cell) + l.origin_v) * scene.spacing;
       const Line line{middle + u * f.u + v * f.v, f.w};
       const auto source = static_cast<std::size_t>(from);
       const double depth = source < e.sphere_count() ? line.chord_end(e, source)
@@ -140,7 +140,7 @@ Retraced retrace(const Enclosure& e, std::int64_t enough_lines) {
           std::min({line.grazing(e, to), line.grazing(e, from), line.grazing(e, hit.surface)}) < tangent;
       ++(tangent_line ? sum.grazing : sum.unexplained);
     };
-    pass.emit_discs([&](const std::int32_t* p, const std::int32_t* end) {
+    const auto check_discs = [&](const std::int32_t* p, const std::int32_t* end) {
       while (p < end) {
         const std::int32_t sphere = p[0], corner = p[1];
         unsigned mask = static_cast<unsigned>(p[2]) & 0xffff;
@@ -149,8 +149,8 @@ Retraced retrace(const Enclosure& e, std::int64_t enough_lines) {
           check(sphere, corner + static_cast<std::int64_t>(lane / 4) * l.pitch + lane % 4, *p);
         }
       }
-    });
-    pass.visit_ends([&](std::int32_t to, std::int64_t cell, std::int32_t from) {
+    };
+    pass.emit_ends(check_discs, [&](std::int32_t to, std::int64_t cell, std::int32_t from) {
       ++sum.lines;
       check(to, cell, from);
     });
@@ -305,7 +305,7 @@ TEST(LineBeds, MemoryLimitThinsWithoutBias) {
   LineOptions o = options(60);
   LineReport full, thin;
   const HitCounts all = sweep_view_factors(dense_bed(), o, &full);
-  o.memory_limit_bytes = all.hits.size() * 96 / 4;
+  o.memory_limit_bytes = all.hits.size() * 64 / 8;
   const HitCounts few = sweep_view_factors(dense_bed(), o, &thin);
   EXPECT_EQ(full.thinning_unit, 1);
   EXPECT_GT(thin.thinning_unit, 1);
