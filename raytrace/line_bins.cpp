@@ -19,9 +19,14 @@ void LineBins::fill(const LineKernels& kernels, const LineSpheres& spheres, cons
   slabs_ = spheres.count / lattice.tiles() / discs_per_bin + 1;
   bins_.assign(static_cast<std::size_t>(lattice.tiles()) * static_cast<std::size_t>(slabs_), Bin{});
   used_ = 0;
+  if (bins_.size() == 1) {
+    projected_.resize(static_cast<std::size_t>(spheres.count));
+    kernels.project(spheres, 0, spheres.count, projection, projected_.data());
+    for (LineRecord& disc : projected_) disc.cell = lattice.cell(0, disc.cell & 0xffff, disc.cell >> 16);
+    return;
+  }
   projected_.resize(spheres_at_once);
-  const std::int32_t shift = lattice.tile_shift;
-  const std::int32_t last_across = lattice.tiles_across - 1, last_down = lattice.tiles_down - 1;
+  const std::int32_t shift = lattice.tile_shift, within = (1 << shift) - 1;
   const auto slabs = static_cast<std::uint64_t>(slabs_);
   for (std::int32_t i = 0; i < spheres.count; i += spheres_at_once) {
     const std::int32_t end = std::min(spheres.count, i + spheres_at_once);
@@ -30,11 +35,16 @@ void LineBins::fill(const LineKernels& kernels, const LineSpheres& spheres, cons
       const LineRecord& disc = projected_[static_cast<std::size_t>(k - i)];
       const std::int32_t column = disc.cell & 0xffff, row = disc.cell >> 16;
       const auto width = static_cast<std::int32_t>(2 * spheres.reach[k]);
-      const std::int32_t left = column >> shift, right = std::min((column + width) >> shift, last_across);
-      const std::int32_t top = row >> shift, bottom = std::min((row + width) >> shift, last_down);
       const auto slab = static_cast<std::int32_t>(disc.key * slabs >> line_key_bits);
-      for (std::int32_t down = top; down <= bottom; ++down)
-        for (std::int32_t across = left; across <= right; ++across) put(disc, slab, across, down, lattice);
+      if (std::max(column & within, row & within) + width <= within) {
+        put(disc, slab, column >> shift, row >> shift, lattice);
+        continue;
+      }
+      const std::int32_t right = std::min((column + width) >> shift, lattice.tiles_across - 1);
+      const std::int32_t bottom = std::min((row + width) >> shift, lattice.tiles_down - 1);
+      for (std::int32_t down = row >> shift; down <= bottom; ++down)
+        for (std::int32_t across = column >> shift; across <= right; ++across)
+          put(disc, slab, across, down, lattice);
     }
   }
 }
@@ -73,15 +83,16 @@ std::size_t LineBins::count(const Bin& bin) const {
   return n;
 }
 
-/// Appends the discs of a bin, by the low and then the high half of the digits of their depth in the slab.
-void LineBins::sort(const Bin& bin, std::uint32_t first_key) {
-  const std::size_t n = count(bin), from = sorted_.size();
+/// Appends `count` discs of a slab, by the low and then the high half of the digits of their depth in it.
+template <class ForRecords>
+void LineBins::sort(std::size_t count, std::uint32_t first_key, ForRecords&& for_records) {
+  const std::size_t from = sorted_.size();
   const std::uint64_t width = depths / static_cast<std::uint64_t>(slabs_) + 1;
   const int digit = std::min(line_key_bits / 2, (static_cast<int>(std::bit_width(width)) + 1) / 2);
   const std::uint32_t low_digit = (1u << digit) - 1;
   std::uint32_t low[1 << line_key_bits / 2], high[1 << line_key_bits / 2], low_sum = 0, high_sum = 0;
   std::fill_n(low, low_digit + 1, 0), std::fill_n(high, low_digit + 1, 0);
-  for_records(bin, [&](const LineRecord& r) {
+  for_records([&](const LineRecord& r) {
     const std::uint32_t key = r.key - first_key;
     ++low[key & low_digit], ++high[key >> digit];
   });
@@ -89,20 +100,27 @@ void LineBins::sort(const Bin& bin, std::uint32_t first_key) {
     low_sum += std::exchange(low[d], low_sum);
     high_sum += std::exchange(high[d], high_sum);
   }
-  if (half_sorted_.size() < n) half_sorted_.resize(n);
-  sorted_.resize(from + n);
+  if (half_sorted_.size() < count) half_sorted_.resize(count);
+  sorted_.resize(from + count);
   LineRecord *half = half_sorted_.data(), *to = sorted_.data() + from;
-  for_records(bin, [&](const LineRecord& r) { half[low[(r.key - first_key) & low_digit]++] = r; });
-  for (std::size_t k = 0; k < n; ++k) to[high[(half[k].key - first_key) >> digit]++] = half[k];
+  for_records([&](const LineRecord& r) { half[low[(r.key - first_key) & low_digit]++] = r; });
+  for (std::size_t k = 0; k < count; ++k) to[high[(half[k].key - first_key) >> digit]++] = half[k];
 }
 
 const std::vector<LineRecord>& LineBins::sorted(std::int32_t tile) {
   sorted_.clear();
+  if (bins_.size() == 1) {
+    sort(projected_.size(), 0, [&](auto&& visit) {
+      for (const LineRecord& r : projected_) visit(r);
+    });
+    return sorted_;
+  }
   const auto slabs = static_cast<std::uint64_t>(slabs_);
   for (std::uint64_t slab = 0; slab < slabs; ++slab) {
     // the smallest key of the slab: key * slabs >> line_key_bits == slab
     const std::uint64_t first_key = ((slab << line_key_bits) + slabs - 1) / slabs;
-    sort(bins_[static_cast<std::uint64_t>(tile) * slabs + slab], static_cast<std::uint32_t>(first_key));
+    const Bin& bin = bins_[static_cast<std::uint64_t>(tile) * slabs + slab];
+    sort(count(bin), static_cast<std::uint32_t>(first_key), [&](auto&& visit) { for_records(bin, visit); });
   }
   return sorted_;
 }

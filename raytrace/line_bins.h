@@ -34,7 +34,8 @@ class LineBins {
   template <class Visit>
   void for_records(const Bin& bin, Visit&& visit) const;
   std::size_t count(const Bin& bin) const;
-  void sort(const Bin& bin, std::uint32_t first_key);
+  template <class ForRecords>
+  void sort(std::size_t count, std::uint32_t first_key, ForRecords&& for_records);
 
   std::int32_t slabs_ = 1;
   std::vector<Bin> bins_;

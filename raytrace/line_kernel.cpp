@@ -279,7 +279,6 @@ void receive(const LineRecord* first, std::int32_t count, std::int32_t step, con
       prefetch_tile(lattice + ahead.cell, pitch);
       __builtin_prefetch(power + ahead.sphere);
       __builtin_prefetch(received + ahead.sphere, 1);
-      __builtin_prefetch(spheres.reach + ahead.sphere);
     }
     const std::int32_t own = power[disc.sphere];
     std::int64_t sum = 0;

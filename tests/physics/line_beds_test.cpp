@@ -35,6 +35,18 @@ const Enclosure& mixed_bed() {
   return bed;
 }
 
+/// 18 000 spheres, some of twice the size, in a long box: the lattice has several tiles, and a
+/// tile several slabs of depth.
+const Enclosure& long_bed() {
+  static const Enclosure bed = [] {
+    const Box box{{0, 0, 0}, {0.015, 0.015, 0.072}};
+    std::vector<double> radii = equal_radii(box, 0.3, r);
+    for (std::size_t k = 0; k < radii.size(); k += 40) radii[k] = 2 * r;
+    return packed(box, radii, 2);
+  }();
+  return bed;
+}
+
 LineOptions options(int directions = 100, std::uint64_t seed = 1) {
   LineOptions o;
   o.directions = directions;
@@ -160,7 +172,11 @@ Retraced retrace(const Enclosure& e, std::int64_t enough_lines) {
 
 // Catches (planted and seen): depth sorted by its low bits only; discs drawn one column to the right (the
 // comparison of view factors below is blind to that: all discs move alike); discs drawn with 1.01 r.
+// Catches (planted and seen) in the long bed: discs drawn only in the tile where they begin; slabs taken from
+// the far end.
 TEST(LineBeds, EmbreeFindsEveryPairOnAHundredThousandLines) {
+  const Retraced tiled = retrace(long_bed(), 50000);
+  EXPECT_EQ(tiled.unexplained, 0) << tiled.pairs << " pairs, " << tiled.grazing << " grazing";
   const Retraced dense = retrace(dense_bed(), 100000);
   EXPECT_EQ(dense.unexplained, 0) << dense.pairs << " pairs, " << dense.grazing << " grazing";
   EXPECT_LT(dense.grazing, dense.pairs / 20000);
@@ -300,7 +316,8 @@ TEST(LineBeds, OverlapsKeepClosureAndBalance) {
   EXPECT_NEAR(std::accumulate(q.begin(), q.end(), 0.0), 0, 1e-15);
 }
 
-// Thinning keeps sums on average: all counts together are unbiased, and memory obeys the limit.
+// Thinning keeps sums on average: all counts together are unbiased, and memory obeys the limit. Catches
+// (planted and seen): one draw for all rounds of thinning that a pair goes through.
 TEST(LineBeds, MemoryLimitThinsWithoutBias) {
   LineOptions o = options(60);
   LineReport full, thin;
