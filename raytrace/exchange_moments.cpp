@@ -68,22 +68,23 @@ class Assembly {
   }
 
   void add_direction(LinePass& pass) {
-    const LineGeometry geometry{scene_, pass.frame(), pass.lattice()};
+    const LineGeometry geometry{pass};
     const std::int32_t pitch = pass.lattice().pitch;
-    pass.emit_discs([&](const std::int32_t* p, const std::int32_t* end) {
-      while (p < end) {
-        const std::int32_t sphere = p[0], corner = p[1];
-        auto mask = static_cast<unsigned>(p[2]) & 0xffff;
-        for (p += 3; mask; mask &= mask - 1, ++p) {
-          const int k = __builtin_ctz(mask);
-          const std::int64_t cell = corner + std::int64_t{k / line_tile} * pitch + k % line_tile;
-          add_pair(end_on(geometry, sphere, cell, -1), end_on(geometry, *p, cell, 1));
-        }
-      }
-    });
-    pass.visit_ends([&](std::int32_t surface, std::int64_t cell, std::int32_t from) {
-      add_pair(end_on(geometry, surface, cell, -1), end_on(geometry, from, cell, 1));
-    });
+    pass.emit_ends(
+        [&](const std::int32_t* p, const std::int32_t* end) {
+          while (p < end) {
+            const std::int32_t sphere = p[0], corner = p[1];
+            auto mask = static_cast<unsigned>(p[2]) & 0xffff;
+            for (p += 3; mask; mask &= mask - 1, ++p) {
+              const int k = __builtin_ctz(mask);
+              const std::int64_t cell = corner + std::int64_t{k / line_tile} * pitch + k % line_tile;
+              add_pair(end_on(geometry, sphere, cell, -1), end_on(geometry, *p, cell, 1));
+            }
+          }
+        },
+        [&](std::int32_t surface, std::int64_t cell, std::int32_t from) {
+          add_pair(end_on(geometry, surface, cell, -1), end_on(geometry, from, cell, 1));
+        });
   }
 
   ExchangeMoments finish(double unit_m2) {
@@ -106,17 +107,16 @@ class Assembly {
     const auto spheres = static_cast<std::int32_t>(scene_.x.size());
     if (surface < spheres) {
       end.element = surface;
-      const Vec3 centre{scene_.x[surface], scene_.y[surface], scene_.z[surface]};
-      const double radius = scene_.radius[surface];
-      const Vec3 point = geometry.point(cell, geometry.sphere(centre, radius, cell, side));
-      sphere_harmonics(order_, (1 / radius) * (point - centre), end.psi);
+      const LineBall ball = geometry.pass.ball(surface);
+      const Vec3 point = geometry.point(cell, geometry.depth(surface, cell, side));
+      sphere_harmonics(order_, (1 / ball.radius) * (point - ball.centre), end.psi);
       return end;
     }
     end.psi[0] = 1;
     end.element = result_.element_count() - 1;
     if (surface == scene_.open_surface) return end;
     const auto wall = surface - spheres;
-    const Vec3 point = geometry.point(cell, geometry.face(scene_.faces[wall], cell)) + scene_.middle;
+    const Vec3 point = geometry.point(cell, geometry.depth(surface, cell, side)) + scene_.middle;
     end.element = spheres + patches_.at(wall, point);
     return end;
   }

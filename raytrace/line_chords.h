@@ -22,8 +22,9 @@ struct MeanChord {
 /// the samples to that of independent directions, a bound for evenly spread ones.
 MeanChord mean_chord(const std::vector<ChordSums>& samples, double total_gaps, double swept);
 
-/// For the direction `pass` was aimed at, gap by gap from the positions of both ends, in double precision.
-/// Lines that escape are left out. Slow beside the kernels: for a self-check on a few directions.
+/// For the direction `pass` was aimed at, gap by gap from the positions of both ends, in double precision; in
+/// large enclosures on every k-th row of lines, and k times that, such that about a million gaps are looked
+/// at. Lines that escape are left out. Slow beside the kernels: for a self-check on a few directions.
 ChordSums chord_sums(LinePass& pass);
 
 }  // namespace granrad

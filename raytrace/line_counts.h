@@ -1,10 +1,9 @@
 #pragma once
-#include <atomic>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "raytrace/exchange.h"
+#include "raytrace/line_events.h"
 
 namespace granrad {
 
@@ -16,83 +15,70 @@ struct SymmetricCounts {
   int thinning_unit = 1;
 };
 
-/// Sums "surface j came before surface i on a line" into sparse rows i, from several threads at once.
-/// Integer sums: the result does not depend on the order of additions. Rows are hash tables that see their
-/// additions in bunches, so that a row is in the cache while it is worked on.
+/// Counts S_ij, the lines on which surfaces i and j follow each other, as sorted lists of pairs i <= j (i =
+/// j: images of one sphere). Threads gather events by blocks of rows; now and then each block's events are
+/// sorted and merged into its list, all in the cache. Integer sums: the result does not depend on the order
+/// of events or on threads.
 class PairCounts {
  public:
-  /// One row per surface; `kind` (0 or 1) separates the pools of pairs whose variances are compared: between
+  /// Bytes at the peak for each pair held: both halves of the result, and what they are made from.
+  static constexpr std::size_t bytes_per_pair = 64;
+  /// Bytes for each event between two merges: its key, and the pair it may become.
+  static constexpr std::size_t bytes_per_event = 16;
+
+  /// `kind` (0 or 1) of each surface separates the pools of pairs whose variances are compared: between
   /// replicates each pair has too few degrees of freedom, so the ratio variance / count is pooled over pairs
-  /// of like kinds and of counts within a factor of two; in large enclosures over a sample of 1 in 16 (pairs
-  /// of kind 1 with kind 1: all). Rows may hold `max_entries` pairs (i, j) between them before thinning
-  /// starts.
-  PairCounts(std::vector<char> kind, std::size_t max_entries);
+  /// of like kinds and of counts within a factor of two; in large enclosures over the pairs of a sample of 1
+  /// in 16 surfaces of kind 0 (kind 1 with kind 1: all). Beyond `max_pairs` thinning starts. `events`: about
+  /// how many to expect between two merges.
+  PairCounts(std::vector<char> kind, std::size_t max_pairs, double events, int threads);
 
-  /// Bunches additions for one thread: predecessors wait in short rows until there are enough.
-  class Buffer {
-   public:
-    Buffer(PairCounts& counts, std::size_t memory_bytes);
-    /// Adds `n` <= bunch() predecessors of `surface`.
-    void append(std::int32_t surface, const std::int32_t* predecessors, std::int32_t n) {
-      const auto row = static_cast<std::size_t>(surface);
-      if (fill_[row] + n + 16 > bunch_) flush(row);
-      std::int32_t* to = waiting_.data() + row * bunch_ + fill_[row];
-      for (std::int32_t k = 0; k < n; ++k) to[k] = predecessors[k];
-      fill_[row] += n;
-    }
-    void prefetch(std::int32_t surface) const {
-      const std::int32_t* to = waiting_.data() + static_cast<std::size_t>(surface) * bunch_ + fill_[surface];
-      __builtin_prefetch(to, 1);
-      __builtin_prefetch(to + 15, 1);
-    }
-    std::int32_t bunch() const { return bunch_ - 16; }
-    void flush();
+  /// Where one thread of the team puts what it finds.
+  PairEvents& events(int thread) { return events_[static_cast<std::size_t>(thread)]; }
 
-   private:
-    void flush(std::size_t row);
-    PairCounts& counts_;
-    std::int32_t bunch_;
-    std::vector<std::int32_t> waiting_, fill_;
-    std::vector<std::int32_t> multiplicity_, distinct_;  // of the row being flushed
-  };
-
-  /// To be called by every thread of a team, after a barrier behind the last flush; so is end_replicate.
-  /// Thins when there are too many pairs: those with n < unit counts stay with probability n / unit and then
-  /// count as unit; which is drawn from (seed, i, j, unit).
-  void keep_within_limit(std::uint64_t seed);
+  /// To be called by every thread of a team, after a barrier behind the last event; so is end_replicate.
+  /// Counts the events, then thins when there are too many pairs: those with n < unit counts stay with
+  /// probability n / unit and then count as unit; which is drawn from (seed, i, j, round of thinning). The
+  /// unit is doubled when thinning by the present one is not enough.
+  void merge(std::uint64_t seed);
   /// Ends one independent randomisation.
   void end_replicate();
-  /// S = C + C^T with variances.
   SymmetricCounts finish();
 
  private:
-  struct Entry {
-    std::int32_t id;
-    std::int32_t current;  ///< this replicate
-    std::uint32_t total;   ///< replicates before
-    float spread;          ///< sum of (S - mean)^2 over them, S the count in both orders
+  struct Pair {
+    std::uint32_t key, count;
   };
-  struct Row {
-    std::vector<Entry> slots;  ///< open addressing, size a power of two; id -1: free
-    std::size_t used = 0;
+  struct Sample {
+    std::uint32_t key;
+    std::uint32_t total;  ///< at the end of the last replicate
+    float spread;         ///< sum over the replicates of (count - mean)^2
   };
-  struct Lock {
-    std::atomic_flag taken = ATOMIC_FLAG_INIT;
+  struct Block {
+    std::vector<Pair> pairs;      ///< keys ascend
+    std::vector<Sample> samples;  ///< of those in sampled rows
   };
-  void add(std::size_t row, const std::int32_t* ids, std::size_t n, std::int32_t* multiplicity);
-  static Entry& slot(Row& row, std::int32_t id);
-  /// The entry of the same pair in the other order, or nullptr.
-  const Entry* mirrored(std::size_t i, std::int32_t j) const;
-  void update_spreads();
-  bool sampled(std::size_t i, std::size_t j) const;
-  static void grow(Row& row);
-  std::size_t thin(std::size_t row, std::uint64_t seed);  ///< returns what is left
+  struct Scratch {
+    std::vector<std::uint32_t> events, room;
+    std::vector<Pair> found, merged;
+  };
+  struct Expanded;
+  struct VariancePools;
 
+  void count_events(std::size_t block, Scratch& scratch);
+  std::size_t thin(std::size_t block, std::uint64_t seed);  ///< returns what is left
+  void sample(std::size_t block);
+  bool sampled(std::size_t row) const;
+  VariancePools pooled_variances() const;
+  Expanded expand();
+
+  PairPacking packing_;
   std::vector<char> kind_;
-  std::vector<Row> rows_;
-  std::unique_ptr<Lock[]> locks_;
-  std::size_t max_entries_, entries_ = 0;
+  std::vector<Block> blocks_;
+  std::vector<PairEvents> events_;
+  std::size_t max_pairs_, pairs_ = 0;
   int replicates_ = 0, unit_ = 1;
+  std::uint32_t thinning_round_ = 0;
 };
 
 }  // namespace granrad

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "dem/scene/constants.h"
 #include "dem/scene/error.h"
 #include "raytrace/line_chords.h"
 #include "raytrace/line_counts.h"
@@ -19,10 +20,9 @@ namespace granrad {
 
 namespace {
 
-/// Bytes at the peak for each ordered pair held: its slot at a load of 3/8 .. 3/4, then both triangles of the
-/// result.
-constexpr std::size_t bytes_per_pair = 96;
-constexpr std::size_t buffer_bytes_per_row = 2048;
+/// Events between two merges: many enough to be worth a walk through all pairs.
+constexpr double least_events = 1 << 22;
+constexpr double merged_directions = 8;
 
 struct Sweep {
   SymmetricCounts counts;
@@ -31,25 +31,45 @@ struct Sweep {
   std::int64_t leaked, ends;
 };
 
-void consume_discs(PairCounts::Buffer& buffer, const std::int32_t* p, const std::int32_t* end) {
-  const auto length = [](const std::int32_t* record) { return 3 + (record[2] >> 16); };
-  const std::int32_t* ahead = p;
-  for (int k = 0; k < 8 && ahead < end; ++k) ahead += length(ahead);
+double polygon_area(const std::vector<Vec3>& corners) {
+  Vec3 twice{};
+  for (std::size_t k = 2; k < corners.size(); ++k)
+    twice += cross(corners[k - 1] - corners[0], corners[k] - corners[0]);
+  return 0.5 * norm(twice);
+}
+
+/// Line ends expected in one direction, those on spheres seen from one side.
+double ends_per_direction(const LineScene& scene) {
+  double area = 0;
+  for (const double r : scene.radius) area += pi * r * r;
+  for (const auto& face : scene.faces) area += polygon_area(face.corners) / 4;
+  return std::max(1.0, area / (scene.spacing * scene.spacing));
+}
+
+void consume(PairEvents& events, const std::int32_t* p, const std::int32_t* end) {
   while (p < end) {
-    if (ahead < end) {
-      buffer.prefetch(*ahead);
-      ahead += length(ahead);
-    }
-    const std::int32_t n = length(p) - 3;
-    buffer.append(p[0], p + 3, n);
-    p += 3 + n;
+    const std::int32_t n = p[1];
+    for (std::int32_t k = 0; k < n; ++k) events.add(p[0], static_cast<std::uint32_t>(p[2 + k]));
+    p += 2 + n;
   }
 }
 
-void consume_walls(PairCounts::Buffer& buffer, std::int32_t surface, const std::int32_t* ids,
-                   std::int64_t n) {
-  for (std::int64_t k = 0; k < n; k += buffer.bunch())
-    buffer.append(surface, ids + k, static_cast<std::int32_t>(std::min<std::int64_t>(n - k, buffer.bunch())));
+/// Line by line, for periodic scenes.
+void consume_pairs(PairEvents& events, LinePass& pass) {
+  const auto add = [&](std::int32_t surface, std::int32_t from) {
+    events.add(surface, static_cast<std::uint32_t>(from) << line_run_bits);
+  };
+  pass.emit(
+      [&](const std::int32_t* p, const std::int32_t* end) {
+        while (p < end) {
+          const std::int32_t sphere = p[0], n = p[2] >> 16;
+          p += 3;
+          for (const std::int32_t* last = p + n; p < last; ++p) add(sphere, *p);
+        }
+      },
+      [&](std::int32_t wall, const std::int32_t* from, std::int64_t n) {
+        for (std::int64_t k = 0; k < n; ++k) add(wall, from[k]);
+      });
 }
 
 /// Directions of a replicate whose void length is measured: between walls all are alike, small periodic boxes
@@ -63,14 +83,15 @@ int chord_directions(const LineScene& scene) {
 
 Sweep sweep(const LineScene& scene, const LineOptions& options, int directions) {
   const std::size_t surfaces = scene.surface_count();
-  const std::size_t buffer_bytes =
-      std::clamp<std::size_t>(surfaces * buffer_bytes_per_row, 1 << 20, options.memory_limit_bytes / 8);
   std::vector<char> kind(surfaces, 1);
   std::fill_n(kind.begin(), scene.x.size(), 0);
-  PairCounts counts(std::move(kind), options.memory_limit_bytes / bytes_per_pair);
-  [[maybe_unused]] const int threads = line_threads(options.threads);
-  const auto affordable = static_cast<int>(options.memory_limit_bytes / bytes_per_pair / (16 * surfaces));
-  const int block = std::clamp(affordable, std::min(4, directions), directions);
+  const int threads = line_threads(options.threads);
+  const double ends = ends_per_direction(scene);
+  const double affordable = static_cast<double>(options.memory_limit_bytes / 4 / PairCounts::bytes_per_event);
+  const double events = std::min(affordable, std::max(least_events, merged_directions * ends));
+  const int block = static_cast<int>(std::clamp(events / ends, 1.0, static_cast<double>(directions)));
+  PairCounts counts(std::move(kind), options.memory_limit_bytes / PairCounts::bytes_per_pair, block * ends,
+                    threads);
   std::int64_t leaked = 0;
   std::vector<ChordSums> chords;
   const int chord_samples = std::min(directions, chord_directions(scene));
@@ -78,21 +99,19 @@ Sweep sweep(const LineScene& scene, const LineOptions& options, int directions) 
 #pragma omp parallel num_threads(threads) reduction(+ : leaked)
   {
     LinePass pass(scene);
-    PairCounts::Buffer buffer(counts, buffer_bytes);
+    PairEvents& found = counts.events(omp_get_thread_num());
     for (int replicate = 0; replicate < options.replicates; ++replicate) {
       for (int from = 0; from < directions; from += block) {
 #pragma omp for schedule(dynamic)
         for (int k = from; k < std::min(directions, from + block); ++k) {
           if (!monitor.go_on(1)) continue;
           pass.aim(line_frame(options.seed, replicate, k, directions));
-          pass.emit([&](const std::int32_t* p, const std::int32_t* end) { consume_discs(buffer, p, end); },
-                    [&](std::int32_t w, const std::int32_t* ids, std::int64_t n) {
-                      consume_walls(buffer, w, ids, n);
-                    });
+          if (scene.is_periodic())
+            consume_pairs(found, pass);
+          else
+            pass.emit_runs([&](const std::int32_t* p, const std::int32_t* end) { consume(found, p, end); });
         }
-        buffer.flush();
-#pragma omp barrier
-        counts.keep_within_limit(options.seed);
+        counts.merge(options.seed);
       }
 #pragma omp single
       for (int k = 0; k < chord_samples; ++k) {
@@ -105,13 +124,13 @@ Sweep sweep(const LineScene& scene, const LineOptions& options, int directions) 
   }
   monitor.throw_if_stopped();
   SymmetricCounts result = counts.finish();
-  std::int64_t ends = 0;
-  for (auto c : result.count) ends += c;
+  std::int64_t found = 0;
+  for (auto c : result.count) found += c;
   const double swept = static_cast<double>(directions) * options.replicates;
   const auto row = result.pattern.row_begin.begin() + scene.open_surface;
   const bool closed = row[0] == row[1];
   return {std::move(result), 2 * scene.spacing * scene.spacing / swept,
-          closed ? mean_chord(chords, 0.5 * static_cast<double>(ends), swept) : MeanChord{}, leaked, ends};
+          closed ? mean_chord(chords, 0.5 * static_cast<double>(found), swept) : MeanChord{}, leaked, found};
 }
 
 /// The stated error, from the variances of pairs as if they were independent.

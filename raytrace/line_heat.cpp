@@ -55,6 +55,7 @@ void receive_pairs(LinePass& pass, const std::vector<std::int32_t>& power, std::
 std::vector<Sums> sweep(const LineScene& scene, const std::vector<std::int32_t>& power,
                         const LineOptions& options, int directions) {
   std::vector<Sums> total(options.replicates, Sums(scene.surface_count(), 0));
+  const std::vector<std::int32_t> sorted_power = scene.sorted(power);
 #pragma omp parallel num_threads(line_threads(options.threads))
   {
     LinePass pass(scene);
@@ -67,12 +68,14 @@ std::vector<Sums> sweep(const LineScene& scene, const std::vector<std::int32_t>&
         if (scene.is_periodic())
           receive_pairs(pass, power, own.data());
         else
-          pass.receive(power, own.data());
+          pass.receive(sorted_power, own.data());
       }
 #pragma omp critical
       for (std::size_t i = 0; i < own.size(); ++i) total[replicate][i] += own[i];
     }
   }
+  if (!scene.is_periodic())
+    for (Sums& sums : total) sums = scene.by_surface(sums);
   return total;
 }
 

@@ -5,12 +5,13 @@
 
 namespace granrad {
 
-LineImages::LineImages(const LineScene& scene) : scene_(scene) {
-  // The numbers of walls and surroundings are taken by points that meet no line.
-  const std::size_t surfaces = scene.surface_count();
-  x_ = scene.x, y_ = scene.y, z_ = scene.z, reach_ = scene.reach;
-  x_.resize(surfaces), y_.resize(surfaces), z_.resize(surfaces), reach_.resize(surfaces);
-  for (std::size_t i = 0; i < surfaces; ++i) home_.push_back(static_cast<std::int32_t>(i));
+LineImages::LineImages(const LineScene& scene)
+    : scene_(scene), x_(scene.x), y_(scene.y), z_(scene.z), reach_(scene.reach), id_(scene.surface) {
+  place_.resize(scene.surface.size());
+  for (std::size_t k = 0; k < place_.size(); ++k) {
+    place_[static_cast<std::size_t>(scene.surface[k])] = static_cast<std::int32_t>(k);
+    source_.push_back(k);
+  }
 }
 
 /// Whether an image of the box, moved by `shift`, may hold spheres on the lines and before the box.
@@ -42,14 +43,14 @@ void LineImages::add_images(const Vec3& shift, const LineFrame& frame, const Lin
     const Vec3 p = c + shift;
     x_.push_back(p.x), y_.push_back(p.y), z_.push_back(p.z);
     reach_.push_back(scene_.reach[i]);
-    home_.push_back(static_cast<std::int32_t>(i));
+    id_.push_back(scene_.open_surface + 1 + static_cast<std::int32_t>(source_.size() - scene_.x.size()));
+    source_.push_back(i);
   }
 }
 
 LineSpheres LineImages::choose(const LineFrame& frame, const LineLattice& lattice) {
-  const std::size_t surfaces = scene_.surface_count();
-  x_.resize(surfaces), y_.resize(surfaces), z_.resize(surfaces), reach_.resize(surfaces),
-      home_.resize(surfaces);
+  const std::size_t own = scene_.x.size();
+  x_.resize(own), y_.resize(own), z_.resize(own), reach_.resize(own), id_.resize(own), source_.resize(own);
   int low[3] = {}, high[3] = {};
   for (int k = 0; k < 3; ++k) {
     if (!(scene_.period[k] > 0)) continue;
@@ -68,6 +69,7 @@ LineSpheres LineImages::choose(const LineFrame& frame, const LineLattice& lattic
           y_.data(),
           z_.data(),
           reach_.data(),
+          id_.data(),
           scene_.spheres().max_reach};
 }
 

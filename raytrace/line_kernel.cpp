@@ -45,12 +45,24 @@ struct Tile {
   void pack(Mask mask, std::int32_t* out) const {
     _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(static_cast<__mmask16>(mask), cells));
   }
+  void spill(std::int32_t* out) const { _mm512_storeu_si512(out, cells); }
   std::int32_t sum(Mask mask) const {
     return _mm512_mask_reduce_add_epi32(static_cast<__mmask16>(mask), cells);
   }
 };
 
 #elif defined(__AVX2__)
+
+/// Positions of the bits set in a byte.
+struct SetLanes {
+  std::uint8_t first_to_last[256][8] = {};
+  constexpr SetLanes() {
+    for (int mask = 0; mask < 256; ++mask)
+      for (int bit = 0, n = 0; bit < 8; ++bit)
+        if (mask >> bit & 1) first_to_last[mask][n++] = static_cast<std::uint8_t>(bit);
+  }
+};
+constexpr SetLanes set_lanes;
 
 struct Tile {
   __m256i low, high;  // rows 0, 1 and rows 2, 3
@@ -90,11 +102,18 @@ struct Tile {
     _mm_storeu_si128(reinterpret_cast<__m128i*>(p + 2 * pitch), _mm256_castsi256_si128(b));
     _mm_storeu_si128(reinterpret_cast<__m128i*>(p + 3 * pitch), _mm256_extracti128_si256(b, 1));
   }
+  static void pack(__m256i half, Mask mask, std::int32_t* out) {
+    const __m128i order = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(set_lanes.first_to_last[mask]));
+    const __m256i packed = _mm256_permutevar8x32_epi32(half, _mm256_cvtepu8_epi32(order));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), packed);
+  }
   void pack(Mask mask, std::int32_t* out) const {
-    alignas(32) std::int32_t all[16];
-    _mm256_store_si256(reinterpret_cast<__m256i*>(all), low);
-    _mm256_store_si256(reinterpret_cast<__m256i*>(all + 8), high);
-    for (; mask; mask &= mask - 1) *out++ = all[__builtin_ctz(mask)];
+    pack(low, mask & 0xff, out);
+    pack(high, mask >> 8, out + __builtin_popcount(mask & 0xff));
+  }
+  void spill(std::int32_t* out) const {
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), low);
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out + 8), high);
   }
   std::int32_t sum(Mask mask) const {
     const __m256i s =
@@ -137,6 +156,9 @@ struct Tile {
   void pack(Mask mask, std::int32_t* out) const {
     for (; mask; mask &= mask - 1) *out++ = cells[__builtin_ctz(mask)];
   }
+  void spill(std::int32_t* out) const {
+    for (int k = 0; k < 16; ++k) out[k] = cells[k];
+  }
   std::int32_t sum(Mask mask) const {
     std::int32_t total = 0;
     for (int k = 0; k < 16; ++k) total += cells[k] & -static_cast<std::int32_t>(mask >> k & 1);
@@ -152,17 +174,17 @@ inline std::int32_t ceiling(double t) {
   return whole + (static_cast<double>(whole) < t);
 }
 
-void project(const LineSpheres& spheres, const LineProjection& to, std::uint32_t* __restrict key,
+void project(const LineSpheres& spheres, std::int32_t begin, std::int32_t end, const LineProjection& to,
              LineRecord* __restrict record) {
   const double *x = spheres.x, *y = spheres.y, *z = spheres.z;
   const float* reach = spheres.reach;
-  for (std::int32_t i = 0; i < spheres.count; ++i) {
+  for (std::int32_t i = begin; i < end; ++i, ++record) {
     const double u = x[i] * to.u[0] + y[i] * to.u[1] + z[i] * to.u[2] + to.u[3];
     const double v = x[i] * to.v[0] + y[i] * to.v[1] + z[i] * to.v[2] + to.v[3];
     const double depth = x[i] * to.key[0] + y[i] * to.key[1] + z[i] * to.key[2] + to.key[3];
     const std::int32_t column = ceiling(u - reach[i]), row = ceiling(v - reach[i]);
-    key[i] = static_cast<std::uint32_t>(static_cast<std::int32_t>(depth));
-    record[i] = {static_cast<float>(column - u), static_cast<float>(row - v), row * to.pitch + column, i};
+    *record = {static_cast<float>(column - u), static_cast<float>(row - v), row * to.pitch + column, i,
+               static_cast<std::uint32_t>(static_cast<std::int32_t>(depth))};
   }
 }
 
@@ -188,36 +210,76 @@ inline void prefetch_tile(const std::int32_t* p, std::int32_t pitch) {
   for (int row = 0; row < line_tile; ++row) __builtin_prefetch(p + row * pitch, 1);
 }
 
-std::int32_t emit(const LineRecord* record, std::int32_t begin, std::int32_t end, const LineSpheres& spheres,
-                  std::int32_t* lattice, std::int32_t pitch, std::int32_t* out, std::int64_t capacity,
-                  std::int64_t reserve, std::int64_t* out_end) {
+/// Draws discs until `out` is nearly full; write(disc, tile, cell, mask, p) appends what a tile held and
+/// returns the new end.
+template <class Write>
+inline std::int32_t draw(const LineRecord* record, std::int32_t begin, std::int32_t end,
+                         const LineSpheres& spheres, std::int32_t* lattice, std::int32_t pitch,
+                         std::int32_t* out, std::int64_t length, std::int64_t* out_end, Write&& write) {
   std::int32_t* p = out;
-  const std::int32_t* last = out + capacity - reserve;
   std::int32_t t = begin;
-  for (; t < end && p <= last; ++t) {
+  for (; t < end && p <= out + length; ++t) {
     const LineRecord disc = record[t];
+    const std::int32_t surface = spheres.surface[disc.sphere];
     if (t + look_ahead < end) prefetch_tile(lattice + record[t + look_ahead].cell, pitch);
     for_tiles(disc, spheres.reach[disc.sphere], pitch, [&](Mask mask, std::int32_t cell) {
       const Tile tile = Tile::load(lattice + cell, pitch);
       mask &= tile.differs_from(outside_id);
-      tile.store(lattice + cell, pitch, mask, disc.sphere);
-      p[0] = disc.sphere;
-      p[1] = cell;
-      const int n = __builtin_popcount(mask);
-      p[2] = static_cast<std::int32_t>(mask) | n << 16;
-      tile.pack(mask, p + 3);
-      p += 3 + n;
+      tile.store(lattice + cell, pitch, mask, surface);
+      p = write(surface, tile, cell, mask, p);
     });
   }
   *out_end = p - out;
   return t;
 }
 
+std::int32_t emit(const LineRecord* record, std::int32_t begin, std::int32_t end, const LineSpheres& spheres,
+                  std::int32_t* lattice, std::int32_t pitch, std::int32_t* out, std::int64_t capacity,
+                  std::int64_t reserve, std::int64_t* out_end) {
+  const auto write = [](std::int32_t surface, const Tile& tile, std::int32_t cell, Mask mask,
+                        std::int32_t* p) {
+    const int n = __builtin_popcount(mask);
+    p[0] = surface;
+    p[1] = cell;
+    p[2] = static_cast<std::int32_t>(mask) | n << 16;
+    tile.pack(mask, p + 3);
+    return p + 3 + n;
+  };
+  return draw(record, begin, end, spheres, lattice, pitch, out, capacity - reserve, out_end, write);
+}
+
+std::int32_t emit_runs(const LineRecord* record, std::int32_t begin, std::int32_t end,
+                       const LineSpheres& spheres, std::int32_t* lattice, std::int32_t pitch,
+                       std::int32_t* out, std::int64_t capacity, std::int64_t reserve,
+                       std::int64_t* out_end) {
+  const auto write = [](std::int32_t surface, const Tile& tile, std::int32_t, Mask mask, std::int32_t* p) {
+    std::int32_t all[16];
+    tile.spill(all);
+    std::int32_t* run = p + 2;
+    while (mask) {
+      const std::int32_t met = all[__builtin_ctz(mask)];
+      const Mask others = mask & tile.differs_from(met);
+      *run++ = static_cast<std::int32_t>(static_cast<std::uint32_t>(met) << line_run_bits) |
+               (__builtin_popcount(mask ^ others) - 1);
+      mask = others;
+    }
+    p[0] = surface;
+    p[1] = static_cast<std::int32_t>(run - p) - 2;
+    return run;
+  };
+  return draw(record, begin, end, spheres, lattice, pitch, out, capacity - reserve, out_end, write);
+}
+
 void receive(const LineRecord* first, std::int32_t count, std::int32_t step, const LineSpheres& spheres,
              const std::int32_t* power, std::int32_t* lattice, std::int32_t pitch, std::int64_t* received) {
   for (std::int32_t t = 0; t < count; ++t, first += step) {
     const LineRecord disc = *first;
-    if (t + look_ahead < count) prefetch_tile(lattice + first[look_ahead * step].cell, pitch);
+    if (t + look_ahead < count) {
+      const LineRecord& ahead = first[look_ahead * step];
+      prefetch_tile(lattice + ahead.cell, pitch);
+      __builtin_prefetch(power + ahead.sphere);
+      __builtin_prefetch(received + ahead.sphere, 1);
+    }
     const std::int32_t own = power[disc.sphere];
     std::int64_t sum = 0;
     for_tiles(disc, spheres.reach[disc.sphere], pitch, [&](Mask mask, std::int32_t cell) {
@@ -233,6 +295,6 @@ void receive(const LineRecord* first, std::int32_t count, std::int32_t step, con
 }  // namespace
 
 extern const LineKernels kernels;
-const LineKernels kernels = {GRANRAD_LINE_NAME, project, emit, receive};
+const LineKernels kernels = {GRANRAD_LINE_NAME, project, emit, emit_runs, receive};
 
 }  // namespace granrad::GRANRAD_LINE_ISA

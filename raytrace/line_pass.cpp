@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "raytrace/line_geometry.h"
 
@@ -15,6 +14,9 @@ constexpr std::int64_t stream_block = 16384;  // integers: 64 KiB, stays in the 
 LinePass::LinePass(const LineScene& scene)
     : scene_(scene), kernels_(line_kernels()), spheres_(scene.spheres()) {
   if (scene.is_periodic()) images_.emplace(scene);
+  place_.resize(scene.surface.size());
+  for (std::size_t k = 0; k < place_.size(); ++k)
+    place_[static_cast<std::size_t>(scene.surface[k])] = static_cast<std::int32_t>(k);
   const auto tiles_across = static_cast<std::int64_t>(2 * spheres_.max_reach) / line_tile + 1;
   reserve_ = std::max(stream_block, tiles_across * tiles_across * (3 + line_tile * line_tile) + 16);
   stream_.resize(static_cast<std::size_t>(2 * reserve_));
@@ -24,49 +26,13 @@ void LinePass::aim(const LineFrame& frame) {
   frame_ = frame;
   lattice_.place(scene_, frame);
   if (images_) spheres_ = images_->choose(frame_, lattice_);
-  const auto n = static_cast<std::size_t>(spheres_.count);
-  key_.resize(n), key_scratch_.resize(n);
-  record_.resize(n), record_scratch_.resize(n);
-  kernels_.project(spheres_, lattice_.projection(scene_, frame), key_.data(), record_.data());
-  sort_by_depth();
-}
-
-void LinePass::sort_by_depth() {
-  constexpr int bits = line_key_bits / 2, buckets = 1 << bits, low_bits = buckets - 1;
-  std::uint32_t low[buckets] = {}, high[buckets] = {};
-  const std::size_t n = record_.size();
-  for (std::size_t i = 0; i < n; ++i) ++low[key_[i] & low_bits], ++high[key_[i] >> bits];
-  std::uint32_t low_sum = 0, high_sum = 0;
-  for (int b = 0; b < buckets; ++b) {
-    low_sum += std::exchange(low[b], low_sum);
-    high_sum += std::exchange(high[b], high_sum);
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::uint32_t to = low[key_[i] & low_bits]++;
-    key_scratch_[to] = key_[i] >> bits;
-    record_scratch_[to] = record_[i];
-  }
-  for (std::size_t i = 0; i < n; ++i) record_[high[key_scratch_[i]]++] = record_scratch_[i];
-}
-
-void LinePass::fill_entries(const std::vector<LineSpan>& spans, std::int32_t outside, std::int32_t open) {
-  cells_.assign(lattice_.cell_count(), images_ ? unknown_id : scene_.closed ? outside : open);
-  for (const LineSpan& s : spans) std::fill(cells_.begin() + s.begin, cells_.begin() + s.end, s.surface);
-}
-
-std::int32_t LinePass::draw(std::int32_t begin, std::int64_t& length) {
-  return kernels_.emit(record_.data(), begin, static_cast<std::int32_t>(record_.size()), spheres_,
-                       cells_.data(), lattice_.pitch, stream_.data(),
-                       static_cast<std::int64_t>(stream_.size()), reserve_, &length);
+  bins_.fill(kernels_, spheres_, lattice_, lattice_.projection(scene_, frame));
 }
 
 Hit LinePass::hit_before(std::int32_t surface, std::int64_t cell) const {
-  const LineGeometry geometry{scene_, frame_, lattice_};
-  const auto spheres = static_cast<std::int32_t>(scene_.x.size());
-  const double depth = surface < spheres
-                           ? geometry.sphere(images_->centre(surface), scene_.radius[surface], cell, -1)
-                           : geometry.face(scene_.faces[surface - spheres], cell);
-  return scene_.tracer->first_hit(geometry.point(cell, depth) + scene_.middle, -1.0 * frame_.w, surface);
+  const double depth = LineGeometry{*this}.depth(surface, cell, -1);
+  return scene_.tracer->first_hit(LineGeometry{*this}.point(cell, depth) + scene_.middle, -1.0 * frame_.w,
+                                  surface);
 }
 
 /// Surface number of what came before `surface`.
@@ -100,19 +66,21 @@ std::int64_t LinePass::keep_home(std::int64_t length) {
 }
 
 void LinePass::receive(const std::vector<std::int32_t>& power, std::int64_t* received) {
-  receive_one_way(lattice_.entry, lattice_.exit, true, power, received);
-  receive_one_way(lattice_.exit, lattice_.entry, false, power, received);
+  for (tile_ = 0; tile_ < lattice_.tiles(); ++tile_) {
+    discs_ = &bins_.sorted(tile_);
+    const Spans &entry = lattice_.entry[static_cast<std::size_t>(tile_)],
+                &exit = lattice_.exit[static_cast<std::size_t>(tile_)];
+    receive_one_way(entry, exit, true, power, received);
+    receive_one_way(exit, entry, false, power, received);
+  }
 }
 
-void LinePass::receive_one_way(const std::vector<LineSpan>& from, const std::vector<LineSpan>& to, bool forth,
+void LinePass::receive_one_way(const Spans& from, const Spans& to, bool forth,
                                const std::vector<std::int32_t>& power, std::int64_t* received) {
-  const std::int32_t open_power = power[scene_.open_surface];
-  cells_.assign(lattice_.cell_count(), scene_.closed ? outside_power : open_power);
-  for (const LineSpan& s : from)
-    std::fill(cells_.begin() + s.begin, cells_.begin() + s.end, power[s.surface]);
-  const auto count = static_cast<std::int32_t>(record_.size());
+  fill(from, outside_power, [&](std::int32_t surface) { return power[surface]; });
+  const auto count = static_cast<std::int32_t>(discs_->size());
   if (count > 0)
-    kernels_.receive(forth ? record_.data() : record_.data() + count - 1, count, forth ? 1 : -1, spheres_,
+    kernels_.receive(forth ? discs_->data() : discs_->data() + count - 1, count, forth ? 1 : -1, spheres_,
                      power.data(), cells_.data(), lattice_.pitch, received);
   const auto arrive = [&](std::int64_t begin, std::int64_t end, std::int32_t surface) {
     std::int64_t sum = 0;
@@ -124,7 +92,8 @@ void LinePass::receive_one_way(const std::vector<LineSpan>& from, const std::vec
     arrive(s.begin, s.end, s.surface);
     if (!scene_.closed) std::fill(cells_.begin() + s.begin, cells_.begin() + s.end, outside_power);
   }
-  if (!scene_.closed) arrive(0, static_cast<std::int64_t>(cells_.size()), scene_.open_surface);
+  if (!scene_.closed)
+    visit_own_cells([&](std::int64_t begin, std::int64_t end) { arrive(begin, end, scene_.open_surface); });
 }
 
 }  // namespace granrad

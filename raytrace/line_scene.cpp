@@ -160,6 +160,36 @@ std::vector<LineScene::Face> faces_about(const Enclosure& e, const Vec3& middle,
   return faces;
 }
 
+/// 10 bits of each coordinate in turn (Morton order).
+std::uint32_t interleaved(const Vec3& at) {
+  std::uint32_t code = 0;
+  for (int bit = 9; bit >= 0; --bit)
+    for (int k = 0; k < 3; ++k) code = code << 1 | (static_cast<std::uint32_t>(at[k]) >> bit & 1);
+  return code;
+}
+
+/// Indices of the points, such that neighbours in space mostly follow each other.
+std::vector<std::int32_t> order_in_space(const std::vector<Vec3>& points, const Bounds& bounds) {
+  constexpr double cells = 1023.999;
+  const double scale = cells / std::max(bounds.diameter(), 1e-300);
+  using Coded = std::pair<std::uint32_t, std::int32_t>;
+  std::vector<Coded> codes(points.size()), other(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    codes[i] = {interleaved(scale * (points[i] - bounds.low)), static_cast<std::int32_t>(i)};
+  constexpr int digit = 10;
+  for (int shift = 0; shift < 30; shift += digit) {
+    std::uint32_t begin[1 << digit] = {}, sum = 0;
+    const auto bucket = [&](const Coded& c) -> std::uint32_t& { return begin[c.first >> shift & 1023]; };
+    for (const Coded& c : codes) ++bucket(c);
+    for (std::uint32_t& b : begin) sum += std::exchange(b, sum);
+    for (const Coded& c : codes) other[bucket(c)++] = c;
+    codes.swap(other);
+  }
+  std::vector<std::int32_t> order(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) order[i] = codes[i].second;
+  return order;
+}
+
 /// Largest distance by which a sphere pokes through a wall; collects the centres that stand behind one.
 double protrusion(const LineScene& scene, const Enclosure& e, std::vector<std::string>& problems) {
   constexpr std::size_t enough = 20;
@@ -168,12 +198,13 @@ double protrusion(const LineScene& scene, const Enclosure& e, std::vector<std::s
     for (const auto& face : scene.faces) {
       const double distance = dot(Vec3{scene.x[i], scene.y[i], scene.z[i]} - face.corners[0], face.normal);
       largest = std::max(largest, scene.radius[i] - distance);
+      const auto at = static_cast<std::size_t>(scene.surface[i]);
       if (distance < 0 && problems.size() < enough)
         problems.push_back(
             fmt::format("lines: particle {} at ({}, {}, {}) stands {} m behind wall {} (no line inside the "
                         "walls meets it) try "
                         "another region",
-                        i, e.centre_m[i].x, e.centre_m[i].y, e.centre_m[i].z, -distance,
+                        scene.surface[i], e.centre_m[at].x, e.centre_m[at].y, e.centre_m[at].z, -distance,
                         e.walls[static_cast<std::size_t>(face.surface) - scene.x.size()].name));
     }
   return largest;
@@ -198,29 +229,39 @@ double line_spacing(const Enclosure& e, double lines_per_disc, double diameter) 
 
 LineSpheres LineScene::spheres() const {
   const float largest = reach.empty() ? 0 : *std::max_element(reach.begin(), reach.end());
-  return {static_cast<std::int32_t>(x.size()), x.data(), y.data(), z.data(), reach.data(), largest};
+  return {static_cast<std::int32_t>(x.size()),
+          x.data(),
+          y.data(),
+          z.data(),
+          reach.data(),
+          surface.data(),
+          largest};
 }
 
 LineScene::LineScene(const Enclosure& enclosure, double lines_per_disc)
-    : radius(enclosure.radius_m), open_surface(static_cast<std::int32_t>(enclosure.open_surface())) {
+    : open_surface(static_cast<std::int32_t>(enclosure.open_surface())) {
   auto problems = shape_problems(enclosure);
   if (!problems.empty()) throw InputError(problems);
 
   Bounds all;
   for (const Wall& wall : enclosure.walls)
     for (const Vec3& p : wall.vertices) all.include(p);
-  for (std::size_t i = 0; i < radius.size(); ++i) all.include(enclosure.centre_m[i], radius[i]);
+  for (std::size_t i = 0; i < enclosure.sphere_count(); ++i)
+    all.include(enclosure.centre_m[i], enclosure.radius_m[i]);
   const bool periodic = enclosure.periodic != std::array<bool, 3>{};
   if (periodic) {
     all.include(enclosure.box.min), all.include(enclosure.box.max);
     for (int k = 0; k < 3; ++k) period[k] = enclosure.periodic[k] ? enclosure.box.size()[k] : 0;
   }
   middle = all.middle();
-  for (Vec3 c : enclosure.centre_m) {
+  surface = order_in_space(enclosure.centre_m, all);
+  for (const std::int32_t s : surface) {
+    Vec3 c = enclosure.centre_m[static_cast<std::size_t>(s)];
     for (int k = 0; k < 3; ++k)
       if (period[k] > 0) c[k] -= period[k] * std::floor((c[k] - enclosure.box.min[k]) / period[k]);
     c -= middle;
     x.push_back(c.x), y.push_back(c.y), z.push_back(c.z);
+    radius.push_back(enclosure.radius_m[static_cast<std::size_t>(s)]);
   }
 
   const double tolerance = corner_tolerance * all.diameter();
@@ -253,12 +294,12 @@ double LineScene::room_for_images() const {
 /// images do.
 void LineScene::add_periods(const Enclosure& enclosure) {
   constexpr double chords = 5, most_periods = 20;
-  double volume = enclosure.box.volume(), surface = 0, shortest = 1e300;
+  double volume = enclosure.box.volume(), area = 0, shortest = 1e300;
   for (const double r : radius) volume -= 4.0 / 3 * pi * r * r * r;
-  for (const double a : surface_areas(enclosure)) surface += a;
+  for (const double a : surface_areas(enclosure)) area += a;
   for (int k = 0; k < 3; ++k)
     if (period[k] > 0) shortest = std::min(shortest, period[k]);
-  upstream_m = std::min(chords * 4 * std::max(volume, 0.0) / surface, most_periods * shortest);
+  upstream_m = std::min(chords * 4 * std::max(volume, 0.0) / area, most_periods * shortest);
   tracer = std::make_shared<EmbreeTracer>(enclosure, 1);
 
   int images[3] = {};

@@ -35,6 +35,18 @@ const Enclosure& mixed_bed() {
   return bed;
 }
 
+/// 18 000 spheres, some of twice the size, in a long box: the lattice has several tiles, and a
+/// tile several slabs of depth.
+const Enclosure& long_bed() {
+  static const Enclosure bed = [] {
+    const Box box{{0, 0, 0}, {0.015, 0.015, 0.072}};
+    std::vector<double> radii = equal_radii(box, 0.3, r);
+    for (std::size_t k = 0; k < radii.size(); k += 40) radii[k] = 2 * r;
+    return packed(box, radii, 2);
+  }();
+  return bed;
+}
+
 LineOptions options(int directions = 100, std::uint64_t seed = 1) {
   LineOptions o;
   o.directions = directions;
@@ -127,8 +139,8 @@ Retraced retrace(const Enclosure& e, std::int64_t enough_lines) {
     const LineFrame& f = pass.frame();
     const LineLattice& l = pass.lattice();
     const auto check = [&](std::int32_t to, std::int64_t cell, std::int32_t from) {
-      const double u = (static_cast<double>(cell % l.pitch) + l.origin_u) * scene.spacing;
-      const double v = (static_cast<double>(cell / l.pitch) + l.origin_v) * scene.spacing;
+      const double u = (pass.column(cell) + l.origin_u) * scene.spacing;
+      const double v = (pass.row(cell) + l.origin_v) * scene.spacing;
       const Line line{middle + u * f.u + v * f.v, f.w};
       const auto source = static_cast<std::size_t>(from);
       const double depth = source < e.sphere_count() ? line.chord_end(e, source)
@@ -140,7 +152,7 @@ Retraced retrace(const Enclosure& e, std::int64_t enough_lines) {
           std::min({line.grazing(e, to), line.grazing(e, from), line.grazing(e, hit.surface)}) < tangent;
       ++(tangent_line ? sum.grazing : sum.unexplained);
     };
-    pass.emit_discs([&](const std::int32_t* p, const std::int32_t* end) {
+    const auto check_discs = [&](const std::int32_t* p, const std::int32_t* end) {
       while (p < end) {
         const std::int32_t sphere = p[0], corner = p[1];
         unsigned mask = static_cast<unsigned>(p[2]) & 0xffff;
@@ -149,8 +161,8 @@ Retraced retrace(const Enclosure& e, std::int64_t enough_lines) {
           check(sphere, corner + static_cast<std::int64_t>(lane / 4) * l.pitch + lane % 4, *p);
         }
       }
-    });
-    pass.visit_ends([&](std::int32_t to, std::int64_t cell, std::int32_t from) {
+    };
+    pass.emit_ends(check_discs, [&](std::int32_t to, std::int64_t cell, std::int32_t from) {
       ++sum.lines;
       check(to, cell, from);
     });
@@ -160,7 +172,11 @@ Retraced retrace(const Enclosure& e, std::int64_t enough_lines) {
 
 // Catches (planted and seen): depth sorted by its low bits only; discs drawn one column to the right (the
 // comparison of view factors below is blind to that: all discs move alike); discs drawn with 1.01 r.
+// Catches (planted and seen) in the long bed: discs drawn only in the tile where they begin; slabs taken from
+// the far end.
 TEST(LineBeds, EmbreeFindsEveryPairOnAHundredThousandLines) {
+  const Retraced tiled = retrace(long_bed(), 50000);
+  EXPECT_EQ(tiled.unexplained, 0) << tiled.pairs << " pairs, " << tiled.grazing << " grazing";
   const Retraced dense = retrace(dense_bed(), 100000);
   EXPECT_EQ(dense.unexplained, 0) << dense.pairs << " pairs, " << dense.grazing << " grazing";
   EXPECT_LT(dense.grazing, dense.pairs / 20000);
@@ -300,12 +316,13 @@ TEST(LineBeds, OverlapsKeepClosureAndBalance) {
   EXPECT_NEAR(std::accumulate(q.begin(), q.end(), 0.0), 0, 1e-15);
 }
 
-// Thinning keeps sums on average: all counts together are unbiased, and memory obeys the limit.
+// Thinning keeps sums on average: all counts together are unbiased, and memory obeys the limit. Catches
+// (planted and seen): one draw for all rounds of thinning that a pair goes through.
 TEST(LineBeds, MemoryLimitThinsWithoutBias) {
   LineOptions o = options(60);
   LineReport full, thin;
   const HitCounts all = sweep_view_factors(dense_bed(), o, &full);
-  o.memory_limit_bytes = all.hits.size() * 96 / 4;
+  o.memory_limit_bytes = all.hits.size() * 64 / 8;
   const HitCounts few = sweep_view_factors(dense_bed(), o, &thin);
   EXPECT_EQ(full.thinning_unit, 1);
   EXPECT_GT(thin.thinning_unit, 1);
