@@ -45,8 +45,7 @@ void HopperFeed::add(Bed& bed, const Vec3& position) const {
 
 void HopperFeed::start(Bed& bed) {
   start_s_ = bed.time_s;
-  placed_ = static_cast<std::int64_t>(bed.size());
-  if (placed_ > 0) return;
+  if (bed.size() > 0) return;
   Box block = settings_.fill_region;
   const double section = block.size().x * block.size().y;
   const double wanted =
@@ -55,12 +54,11 @@ void HopperFeed::start(Bed& bed) {
   auto radii = equal_radii(block, settings_.solid_fraction, radius_);
   radii.resize(std::min<std::size_t>(radii.size(), settings_.particle_count), radius_);
   for (const Vec3& p : pack_spheres({{block, {}}, radii, settings_.seed})) add(bed, p);
-  placed_ = static_cast<std::int64_t>(bed.size());
 }
 
 /// Spheres that should come now.
 std::int64_t HopperFeed::due(const Bed& bed, const FeedTotals& totals) const {
-  const std::int64_t have = settings_.refill ? static_cast<std::int64_t>(bed.size()) : placed_;
+  const std::int64_t have = settings_.refill ? static_cast<std::int64_t>(bed.size()) : bed.next_id - 1;
   const std::int64_t missing = std::max<std::int64_t>(0, settings_.particle_count - have);
   if (settings_.mass_flow_kg_s <= 0) return missing;
   const double allowed =
@@ -74,22 +72,24 @@ void HopperFeed::insert_due(Bed& bed, FeedTotals& totals) {
   std::vector<std::size_t> in_region;
   for (std::size_t i = 0; i < bed.size(); ++i)
     if (bed.position_m[i].z > settings_.fill_region.min.z - bed.radius_m[i]) in_region.push_back(i);
-  constexpr int most_failures = 20;
-  for (int failures = 0; totals.waiting > 0 && failures < most_failures;)
-    drop_one(bed, in_region) ? --totals.waiting : ++failures;
+  while (totals.waiting > 0 && drop_one(bed, in_region)) --totals.waiting;
 }
 
-bool HopperFeed::drop_one(Bed& bed, std::vector<std::size_t>& in_region) {
-  const auto u = random_uniform2(settings_.seed, drop_stream, tries_++);
+/// False when none of the places it tries has room.
+bool HopperFeed::drop_one(Bed& bed, std::vector<std::size_t>& in_region) const {
+  constexpr int places = 20;
   const Box& region = settings_.fill_region;
   const Vec3 room = region.size() - Vec3{2 * radius_, 2 * radius_, 0};
-  const double x = region.min.x + radius_ + room.x * u[0], y = region.min.y + radius_ + room.y * u[1];
-  const double z = floor_at(bed, in_region, x, y) + 1e-3 * radius_;
-  if (z > region.max.z - radius_) return false;
-  in_region.push_back(bed.size());
-  add(bed, {x, y, z});
-  ++placed_;
-  return true;
+  for (int k = 0; k < places; ++k) {
+    const auto u = random_uniform2(settings_.seed, drop_stream, bed.next_id * places + k);
+    const double x = region.min.x + radius_ + room.x * u[0], y = region.min.y + radius_ + room.y * u[1];
+    const double z = floor_at(bed, in_region, x, y) + 1e-3 * radius_;
+    if (z > region.max.z - radius_) continue;
+    in_region.push_back(bed.size());
+    add(bed, {x, y, z});
+    return true;
+  }
+  return false;
 }
 
 /// Lowest height from which a sphere at (x, y) sees no other above or beside it.
@@ -106,13 +106,10 @@ double HopperFeed::floor_at(const Bed& bed, const std::vector<std::size_t>& in_r
 }
 
 void HopperFeed::save(StateBlock& state) const {
-  state.integers["hopper_counters"] = {placed_, tries_};
   state.reals["hopper_start_s"] = {start_s_};
 }
 
 void HopperFeed::load(const StateBlock& state) {
-  const auto& counters = state.integers.at("hopper_counters");
-  placed_ = counters[0], tries_ = counters[1];
   start_s_ = state.reals.at("hopper_start_s")[0];
 }
 

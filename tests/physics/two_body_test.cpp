@@ -102,5 +102,52 @@ TEST(TwoBody, sliding_sphere_ends_rolling) {
   EXPECT_NEAR(bed.velocity_m_s[0].x, 0.1 * 5 / 7, 2e-5);
 }
 
+/// Two materials; pairs mix as sqrt(e1 e2), sqrt(mu1 mu2), sqrt(mu_r1 mu_r2).
+Bed unequal_pair(double rolling_first, double rolling_second, double step) {
+  Bed bed = empty_bed();
+  bed.materials[0].rolling_friction = rolling_first;
+  Material other;
+  other.density_kg_m3 = 2500;
+  other.youngs_modulus_Pa = 2e7;
+  other.poisson_ratio = 0.3;
+  other.restitution = 0.9;
+  other.friction = 0.1;
+  other.rolling_friction = rolling_second;
+  bed.materials.push_back(other);
+  const Vec3 u{0.2, 0, 0}, v{-0.1, 0, 0};
+  bed.add(shifted({-5.5e-4, 0, 0}, u, step), u, radius, 300, 0);
+  bed.add(shifted({4.6e-4, 3e-4, 1e-4}, v, step), v, 6e-4, 300, 1);
+  return bed;
+}
+
+// Planted: the law of the first material for the pair; the arm of the first sphere for both.
+TEST(TwoBody, unequal_spheres_of_two_materials_match_liggghts) {
+  for (const bool rolling : {false, true}) {
+    const double step = 1e-7;
+    Bed bed = rolling ? unequal_pair(0.02, 0.05, step) : unequal_pair(0, 0, step);
+    make_native_engine(bed, {}, step)->advance(bed, 2e-3);
+    for (const int i : {0, 1}) {
+      const auto want =
+          last_row(rolling ? "unequal_pair_rolling_dt1e-7.csv" : "unequal_pair_dt1e-7.csv", i + 1);
+      const Vec3 v{want[5], want[6], want[7]}, w{want[8], want[9], want[10]};
+      EXPECT_LT(norm(bed.velocity_m_s[i] - v), 1e-9 * norm(v)) << rolling << i;
+      EXPECT_LT(norm(bed.angular_velocity_rad_s[i] - w), 1e-9 * norm(w)) << rolling << i;
+    }
+  }
+}
+
+// Planted: rolling friction twice as strong.
+TEST(TwoBody, rolling_friction_matches_liggghts) {
+  Bed bed = empty_bed();
+  bed.materials[0].rolling_friction = 0.02;
+  bed.walls = {floor_at_zero()};
+  bed.add({-0.01, 0, 3.999e-4}, {0.1, 0.03, 0}, radius, 300);
+  make_native_engine(bed, {0, 0, -9.81}, 1e-6)->advance(bed, 0.1);
+  const auto want = last_row("rolling_mur0.02_dt1e-6.csv", 1);
+  const Vec3 v{want[5], want[6], want[7]}, w{want[8], want[9], want[10]};
+  EXPECT_LT(norm(bed.velocity_m_s[0] - v), 1e-5 * norm(v));  // half a step of gravity at the start
+  EXPECT_LT(norm(bed.angular_velocity_rad_s[0] - w), 1e-5 * norm(w));
+}
+
 }  // namespace
 }  // namespace granrad
