@@ -5,6 +5,9 @@
 // so away from all four walls. The LIGGGHTS snapshot of the 4 x 4 outlet gives 0.755 by this measure.
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <map>
+
 #include "dem/engine_native.h"
 #include "dem/feed.h"
 #include "tests/feed_scenes.h"
@@ -76,6 +79,56 @@ TEST(MovingBed, LongOutlet3x4) {
 }
 TEST(MovingBed, LongOutlet2x4) {
   expect_flow(run("moving_bed_2x4", 1.5, 3.5), 1.1, 1.5);
+}
+
+/// Volume of the part of the bed between two heights.
+double solid_volume(const Bed& bed, double low, double high) {
+  const auto below = [](double x) {  // of a unit sphere, under the plane at x
+    x = std::clamp(x, -1.0, 1.0);
+    return pi * (2.0 / 3 + x - x * x * x / 3);
+  };
+  double sum = 0;
+  for (std::size_t i = 0; i < bed.size(); ++i) {
+    const double r = bed.radius_m[i], z = bed.position_m[i].z;
+    sum += r * r * r * (below((high - z) / r) - below((low - z) / r));
+  }
+  return sum;
+}
+
+/// Solid fractions of slices of the feed hopper, by their lower end (data/reference/liggghts_feed_fill.csv).
+std::map<double, double> filled_feed_of_liggghts() {
+  std::ifstream in(GRANRAD_SOURCE_DIR "/data/reference/liggghts_feed_fill.csv");
+  EXPECT_TRUE(in);
+  std::map<double, double> slices;
+  for (std::string line; std::getline(in, line);)
+    if (std::isdigit(line[0])) slices[std::stod(line)] = std::stod(line.substr(line.find(',') + 1));
+  return slices;
+}
+
+// The feed hopper alone, filled over a shutter at its foot as in LIGGGHTS: the same number of spheres,
+// loosely strewn, falling at 0.4 m/s.
+TEST(MovingBed, LongFilledFeedIsAsDenseAsInLiggghts) {
+  auto document = TomlDocument::from_file(GRANRAD_SOURCE_DIR "/data/scenes/moving_bed_4x4.toml");
+  Scene scene = read_scene(document);
+  Wall shutter;
+  shutter.vertices = {
+      {-5.5e-3, -2.5e-3, 0.05}, {5.5e-3, -2.5e-3, 0.05}, {5.5e-3, 2.5e-3, 0.05}, {-5.5e-3, 2.5e-3, 0.05}};
+  scene.walls.push_back(shutter);
+  scene.feed.fill_region = {{-0.0144, -0.0114, 0.0705}, {0.0144, 0.0114, 0.0985}};
+  scene.feed.solid_fraction = 0.2;
+  Feed feed(scene);
+  Bed bed = initial_bed(scene);
+  feed.start(bed);
+  ASSERT_EQ(bed.size(), 13576u);
+  make_native_engine(bed, scene.gravity_m_s2, scene.step_s)->advance(bed, 0.22);
+  for (const auto& [low, want] : filled_feed_of_liggghts()) {
+    const auto area = [](double z) { return 4 * (5e-3 + 0.5 * (z - 0.05)) * (2e-3 + 0.5 * (z - 0.05)); };
+    const double thickness = 2e-3, high = low + thickness;
+    const double volume = thickness / 6 * (area(low) + 4 * area(low + 0.5 * thickness) + area(high));
+    const double found = solid_volume(bed, low, high) / volume;
+    std::printf("z = %.0f mm: solid fraction %.4f, LIGGGHTS %.4f\n", 1e3 * low, found, want);
+    EXPECT_NEAR(found, want, 0.01) << low;
+  }
 }
 
 TEST(MovingBed, LongMustardSeedFlows) {
