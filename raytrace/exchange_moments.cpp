@@ -69,22 +69,9 @@ class Assembly {
 
   void add_direction(LinePass& pass) {
     const LineGeometry geometry{pass};
-    const std::int32_t pitch = pass.lattice().pitch;
-    pass.emit_ends(
-        [&](const std::int32_t* p, const std::int32_t* end) {
-          while (p < end) {
-            const std::int32_t sphere = p[0], corner = p[1];
-            auto mask = static_cast<unsigned>(p[2]) & 0xffff;
-            for (p += 3; mask; mask &= mask - 1, ++p) {
-              const int k = __builtin_ctz(mask);
-              const std::int64_t cell = corner + std::int64_t{k / line_tile} * pitch + k % line_tile;
-              add_pair(end_on(geometry, sphere, cell, -1), end_on(geometry, *p, cell, 1));
-            }
-          }
-        },
-        [&](std::int32_t surface, std::int64_t cell, std::int32_t from) {
-          add_pair(end_on(geometry, surface, cell, -1), end_on(geometry, from, cell, 1));
-        });
+    pass.visit_all_ends([&](std::int32_t surface, std::int64_t cell, std::int32_t from) {
+      add_pair(end_on(geometry, surface, cell, -1), end_on(geometry, from, cell, 1));
+    });
   }
 
   ExchangeMoments finish(double unit_m2) {

@@ -53,17 +53,7 @@ ChordSums chord_sums(LinePass& pass) {
     sums.length_m += stride * std::max(0.0, length);
     sums.gaps += stride;
   };
-  pass.emit_ends(
-      [&](const std::int32_t* p, const std::int32_t* end) {
-        while (p < end) {
-          const std::int32_t surface = p[0], corner = p[1];
-          auto mask = static_cast<unsigned>(p[2]) & 0xffff;
-          for (p += 3; mask; mask &= mask - 1, ++p) {
-            const int k = __builtin_ctz(mask);
-            gap(*p, surface, corner + k / line_tile * pass.lattice().pitch + k % line_tile);
-          }
-        }
-      },
+  pass.visit_all_ends(
       [&](std::int32_t surface, std::int64_t cell, std::int32_t from) { gap(from, surface, cell); });
   return sums;
 }

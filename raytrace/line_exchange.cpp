@@ -54,24 +54,6 @@ void consume(PairEvents& events, const std::int32_t* p, const std::int32_t* end)
   }
 }
 
-/// Line by line, for periodic scenes.
-void consume_pairs(PairEvents& events, LinePass& pass) {
-  const auto add = [&](std::int32_t surface, std::int32_t from) {
-    events.add(surface, static_cast<std::uint32_t>(from) << line_run_bits);
-  };
-  pass.emit(
-      [&](const std::int32_t* p, const std::int32_t* end) {
-        while (p < end) {
-          const std::int32_t sphere = p[0], n = p[2] >> 16;
-          p += 3;
-          for (const std::int32_t* last = p + n; p < last; ++p) add(sphere, *p);
-        }
-      },
-      [&](std::int32_t wall, const std::int32_t* from, std::int64_t n) {
-        for (std::int64_t k = 0; k < n; ++k) add(wall, from[k]);
-      });
-}
-
 /// Directions of a replicate whose void length is measured: between walls all are alike, small periodic boxes
 /// scatter.
 int chord_directions(const LineScene& scene) {
@@ -107,7 +89,9 @@ Sweep sweep(const LineScene& scene, const LineOptions& options, int directions) 
           if (!monitor.go_on(1)) continue;
           pass.aim(line_frame(options.seed, replicate, k, directions));
           if (scene.is_periodic())
-            consume_pairs(found, pass);
+            pass.emit_pairs([&](std::int32_t surface, std::int32_t from) {
+              found.add(surface, static_cast<std::uint32_t>(from) << line_run_bits);
+            });
           else
             pass.emit_runs([&](const std::int32_t* p, const std::int32_t* end) { consume(found, p, end); });
         }

@@ -33,22 +33,11 @@ using Sums = std::vector<std::int64_t>;
 /// Adds the power differences of all pairs of neighbours to both: for periodic scenes, whose lines cannot be
 /// walked back.
 void receive_pairs(LinePass& pass, const std::vector<std::int32_t>& power, std::int64_t* received) {
-  const auto exchange = [&](std::int32_t surface, std::int32_t from) {
+  pass.emit_pairs([&](std::int32_t surface, std::int32_t from) {
     const std::int64_t difference = std::int64_t{power[from]} - power[surface];
     received[surface] += difference;
     received[from] -= difference;
-  };
-  pass.emit(
-      [&](const std::int32_t* p, const std::int32_t* end) {
-        while (p < end) {
-          const std::int32_t sphere = p[0], n = p[2] >> 16;
-          p += 3;
-          for (const std::int32_t* last = p + n; p < last; ++p) exchange(sphere, *p);
-        }
-      },
-      [&](std::int32_t wall, const std::int32_t* from, std::int64_t n) {
-        for (std::int64_t k = 0; k < n; ++k) exchange(wall, from[k]);
-      });
+  });
 }
 
 /// Sum of power differences over the line ends of every surface, for each replicate.

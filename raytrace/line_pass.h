@@ -29,6 +29,12 @@ class LinePass {
   /// be images (see LineImages), predecessors unknown_id; `emit` keeps the line ends in the box.
   template <class Discs, class Visit>
   void emit_ends(Discs&& discs, Visit&& visit);
+  /// The same, one by one: visit(surface, cell, from).
+  template <class Visit>
+  void visit_all_ends(Visit&& visit);
+  /// As `emit`, one by one: pair(surface, from).
+  template <class Pair>
+  void emit_pairs(Pair&& pair);
   /// Not for periodic scenes. Emits how often each pair follows each other: `runs(begin, end)` gets blocks of
   /// the stream of LineKernels::emit_runs, walls and surroundings included.
   template <class Runs>
@@ -184,6 +190,37 @@ void LinePass::emit(Discs&& discs, Walls&& walls) {
     });
     hand_over();
   }
+}
+
+template <class Visit>
+void LinePass::visit_all_ends(Visit&& visit) {
+  emit_ends(
+      [&](const std::int32_t* p, const std::int32_t* end) {
+        while (p < end) {
+          const std::int32_t surface = p[0], corner = p[1];
+          auto mask = static_cast<unsigned>(p[2]) & 0xffff;
+          for (p += 3; mask; mask &= mask - 1, ++p) {
+            const int k = __builtin_ctz(mask);
+            visit(surface, corner + std::int64_t{k / line_tile} * lattice_.pitch + k % line_tile, *p);
+          }
+        }
+      },
+      visit);
+}
+
+template <class Pair>
+void LinePass::emit_pairs(Pair&& pair) {
+  emit(
+      [&](const std::int32_t* p, const std::int32_t* end) {
+        while (p < end) {
+          const std::int32_t surface = p[0], n = p[2] >> 16;
+          p += 3;
+          for (const std::int32_t* last = p + n; p < last; ++p) pair(surface, *p);
+        }
+      },
+      [&](std::int32_t wall, const std::int32_t* from, std::int64_t n) {
+        for (std::int64_t k = 0; k < n; ++k) pair(wall, from[k]);
+      });
 }
 
 template <class Runs>
