@@ -64,6 +64,8 @@ TEST(Scene, PlugIsCompleteWithDefaults) {
   EXPECT_EQ(s.walls[0].role, WallRole::adiabatic) << "without radiation no role need be chosen";
   EXPECT_EQ(s.region.max, s.box.max);
   EXPECT_EQ(s.engine, EngineKind::native);
+  EXPECT_EQ(s.precision, Precision::full);
+  EXPECT_EQ(parse(plug_scene + "[dem]\nprecision = 'mixed'\n").precision, Precision::mixed);
   EXPECT_EQ(s.step_s, 0);
   EXPECT_TRUE(s.feed.start_filled);
   // m = rho phi A v; 0.0399 m/s is the paper's speed for phi = 0.25 at 1.59 g/s.
@@ -256,6 +258,8 @@ TEST(Scene, BadScenesAreRefusedWithTheirPlace) {
        {"the fill region must hold a particle"}},
       {plug_scene + "[dem]\nengine = 'liggghts'\n",
        {"dem.engine = \"liggghts\" (is not built into this program; use \"native\")"}},
+      {plug_scene + "[dem]\nprecision = 'single'\n",
+       {"dem.precision = \"single\" (must be one of \"double\", \"mixed\")"}},
       {plug_scene + "[dem]\nstep_s = 0\n", {"dem.step_s = 0 (must be > 0 s)"}},
       {plug_scene + "[dme]\nstep_s = 1\n", {"f.toml:21:2: unknown table [dme]. Did you mean [dem]?"}},
       {plug_scene + "[[materials]]\nname = 'material'\n" + material.substr(11),
