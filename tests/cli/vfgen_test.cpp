@@ -306,4 +306,20 @@ rays = 300
   EXPECT_TRUE(fs::exists(path("t.html")));
 }
 
+// Version 1 held one variance factor for all pairs, as a dataset.
+TEST_F(Vfgen, RefusesViewFactorsOfAnOlderVersion) {
+  {
+    granrad::Hdf5Writer old(path("old.h5"));
+    old.attribute("/", "format", std::string("granrad.view_factors"));
+    old.attribute("/", "version", std::vector<std::int64_t>{1});
+    old.write("/rays/variance_factor", std::vector<double>{1});
+    old.commit();
+  }
+  const auto outcome = vfgen("fit " + path("old.h5") + " -o " + path("t.toml"));
+  expect_says(outcome, 2, "version = 1");
+  expect_says(outcome, 2, "trace the snapshot again");
+  ASSERT_EQ(vfgen("trace " + two_spheres() + " -q -o " + path("new.h5") + " --rays 10").code, 0);
+  EXPECT_EQ(granrad::Hdf5Reader(path("new.h5")).integer_attribute("/", "version"), 2);
+}
+
 }  // namespace
