@@ -145,7 +145,6 @@ void write_spent(Hdf5Writer& out, const ViewFactorFile& content) {
   out.attribute("/spent", "sampling", content.sampling);
   out.attribute("/spent", "rays", std::vector<std::int64_t>{content.spent.rays});
   out.attribute("/spent", "rounds", std::vector<std::int64_t>{content.spent.rounds});
-  out.attribute("/spent", "seconds", content.spent.seconds);
   out.attribute("/spent", "stated",
                 std::string(content.hot_walls.empty() ? "particle_wall_sums" : "particle_fluxes"));
   out.attribute("/spent", "hot_walls", content.hot_walls);
@@ -157,7 +156,6 @@ void read_spent(const Hdf5Reader& in, ViewFactorFile& content) {
   content.sampling = in.text_attribute("/spent", "sampling");
   content.spent.rays = in.integer_attribute("/spent", "rays");
   content.spent.rounds = static_cast<int>(in.integer_attribute("/spent", "rounds"));
-  content.spent.seconds = in.real_attribute("/spent", "seconds");
   content.spent.error = in.real_attribute("/spent", "error");
   content.error_target = in.real_attribute("/spent", "error_target");
   content.hot_walls = in.text_attribute("/spent", "hot_walls");

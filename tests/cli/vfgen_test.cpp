@@ -322,4 +322,21 @@ TEST_F(Vfgen, RefusesViewFactorsOfAnOlderVersion) {
   EXPECT_EQ(granrad::Hdf5Reader(path("new.h5")).integer_attribute("/", "version"), 2);
 }
 
+// Planted: the time a trace took, written into the file.
+TEST_F(Vfgen, SameBytesForAnyNumberOfThreads) {
+  const auto bytes = [&](const std::string& name) {
+    std::stringstream content;
+    content << std::ifstream(path(name), std::ios::binary).rdbuf();
+    return content.str();
+  };
+  for (const std::string method : {"embree", "lines"}) {
+    for (const std::string threads : {"1", "2"})
+      ASSERT_EQ(vfgen("trace " + two_spheres() + " -q -o " + path("t" + threads + ".h5") +
+                      " --rays 1000 --box 0.01,0.004,0.004 --method " + method + " --threads " + threads)
+                    .code,
+                0);
+    EXPECT_TRUE(bytes("t1.h5") == bytes("t2.h5")) << method;
+  }
+}
+
 }  // namespace
