@@ -43,7 +43,7 @@ void write_vtk(Hdf5Writer& out, const Bed& bed, const std::map<std::string, std:
   std::iota(index.begin(), index.end(), 0);
   out.group("/VTKHDF");
   out.attribute("/VTKHDF", "Version", std::vector<std::int64_t>{1, 0});
-  out.attribute("/VTKHDF", "Type", "UnstructuredGrid");
+  out.fixed_text_attribute("/VTKHDF", "Type", "UnstructuredGrid");
   for (const char* count : {"NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"})
     out.write(fmt::format("/VTKHDF/{}", count), std::vector<std::int64_t>{n});
   out.write("/VTKHDF/Connectivity", index.data(), bed.size());

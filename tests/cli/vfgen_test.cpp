@@ -339,4 +339,14 @@ TEST_F(Vfgen, SameBytesForAnyNumberOfThreads) {
   }
 }
 
+// A scalar text of variable length is a str in h5py, one of fixed length is bytes: format == "..." would fail.
+TEST_F(Vfgen, AttributesAreTextsOfVariableLength) {
+  ASSERT_EQ(vfgen("trace " + two_spheres() + " -q -o " + path("a.h5") + " --rays 10").code, 0);
+  const auto dump = run("h5dump -a /format -a /method -a /failed " + path("a.h5"));
+  if (dump.code != 0) GTEST_SKIP() << "no h5dump";
+  EXPECT_EQ(dump.text.find("STRSIZE 2"), std::string::npos) << dump.text;
+  EXPECT_NE(dump.text.find("STRSIZE H5T_VARIABLE"), std::string::npos) << dump.text;
+  EXPECT_EQ(granrad::read_view_factors(path("a.h5")).method, "embree");
+}
+
 }  // namespace
