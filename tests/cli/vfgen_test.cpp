@@ -92,6 +92,11 @@ TEST_F(Vfgen, RefusesBadUsageWithCode2) {
   expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --box 1,2,x"), 2, "X,Y,Z");
   expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --box 1,2,-3"), 2, "positive");
   expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --radius -1"), 2, "--radius");
+  for (const std::string option : {"rays", "error", "emissivity", "wall-emissivity", "radius"})
+    expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --" + option + " nan"), 2,
+                "--" + option + ": nan (must be a number in");
+  expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --radius 4mm"), 2, "4mm (must be a number");
+  expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --seed -1"), 2, "-1 (must be a whole number");
   expect_says(vfgen("trace " + csv + " -o " + path("x.txt")), 2, ".h5");
   expect_says(
       vfgen("trace " + csv + " -o " + path("x.h5") + " --box 0.01,0.01,0.01 --method lines --emissivity 0.5"),
