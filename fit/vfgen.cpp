@@ -83,7 +83,7 @@ void add_trace(CLI::App& app, Body& body) {
                  "six black walls: X,Y,Z in metres, corner at the origin or at :x0,y0,z0");
   sub.add_option("--radius", command->enclosure.radius_m, "radius in metres, for files without one")
       ->check(number_in(1e-12, 1e6));
-  sub.add_option("--walls", command->enclosure.stl, "STL file of walls, metres")->check(CLI::ExistingFile);
+  sub.add_option("--walls", command->enclosure.stl, "STL file of walls, metres");
   sub.add_option("--seed", command->trace.seed, "of the random numbers")
       ->check(seed_number())
       ->capture_default_str();

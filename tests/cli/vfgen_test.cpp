@@ -112,6 +112,15 @@ TEST_F(Vfgen, SaysWhichFileIsMissingWithCode3) {
   expect_says(vfgen("check " + path("none.toml")), 3, "none.toml");
   expect_says(vfgen("generate " + path("none.toml") + " -o " + path("out")), 3, "none.toml");
   expect_says(vfgen("trace " + two_spheres() + " -o /proc/none/x.h5"), 3, "/proc/none");
+  // Found before hours of tracing, not after.
+  const auto unwritable = vfgen("trace " + two_spheres() + " --walls none.stl -o /proc/none/x.h5");
+  EXPECT_EQ(unwritable.text.find("none.stl"), std::string::npos) << unwritable.text;
+  const auto second = vfgen("trace " + two_spheres() + " " + path("a.csv") + " " + path("b.csv") + " -o " + path("x.h5"));
+  expect_says(second, 3, "a.csv: there is no such file");
+  expect_says(second, 3, "b.csv");
+  EXPECT_FALSE(fs::exists(path("x_0001.h5")));
+  expect_says(vfgen("trace " + two_spheres() + " --rays 10 -o " + path("made/x.h5")), 0, "made/x.h5");
+  expect_says(vfgen("trace " + two_spheres() + " --walls none.stl -o " + path("x.h5")), 3, "none.stl");
 }
 
 TEST_F(Vfgen, RefusesBadFilesWithCode2) {
