@@ -363,4 +363,16 @@ TEST_F(Vfgen, AttributesAreTextsOfVariableLength) {
   EXPECT_EQ(granrad::read_view_factors(path("a.h5")).method, "embree");
 }
 
+// Planted: periods kept; the sphere beyond the box is folded back into it.
+TEST_F(Vfgen, BoxEndsThePeriodsOfADump) {
+  const auto dump = write("pp.dump",
+                          "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp ff\n0 0.01\n0 "
+                          "0.004\n0 0.004\nITEM: ATOMS id x y z\n1 0.002 0.002 0.002\n2 0.0032 0.002 0.002\n");
+  const auto outcome = vfgen("trace " + dump + " --radius 4e-4 --box 0.003,0.004,0.004 --rays 1000 -o " + path("x.h5"));
+  expect_says(outcome, 0, "1 particles with their centre outside the box were left out");
+  const auto enclosure = granrad::read_view_factors(path("x.h5")).enclosure;
+  EXPECT_EQ(enclosure.sphere_count(), 1u);
+  EXPECT_EQ(enclosure.periodic, (std::array<bool, 3>{}));
+}
+
 }  // namespace
