@@ -375,4 +375,10 @@ TEST_F(Vfgen, BoxEndsThePeriodsOfADump) {
   EXPECT_EQ(enclosure.periodic, (std::array<bool, 3>{}));
 }
 
+TEST_F(Vfgen, AnErrorOutOfReachIsCode4) {
+  expect_says(vfgen("trace " + two_spheres() + " --box 0.0101,0.0104,0.0204 --error 1e-6 -o " + path("x.h5")), 4,
+              "ask for less");
+  EXPECT_FALSE(fs::exists(path("x.h5")));
+}
+
 }  // namespace

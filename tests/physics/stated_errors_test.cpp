@@ -205,7 +205,7 @@ TEST(TargetError, SpendsRaysWhereTheErrorIs) {
 TEST(TargetError, OutOfReachIsRefused) {
   TraceOptions o;
   o.target_error = 1e-7;
-  EXPECT_THROW(trace_view_factors(equal_bed(), o), NumericalError);
+  EXPECT_THROW(trace_view_factors(equal_bed(), o), ThresholdMissed);
   o.hot_walls = {3};
   EXPECT_THROW(trace_view_factors(equal_bed(), o), InputError);  // a particle
 }
