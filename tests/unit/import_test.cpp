@@ -110,6 +110,16 @@ TEST_F(Import, DumpColumnsComeByName) {
   EXPECT_EQ(scaled.position_m[0], (Vec3{1, -0.5, 0.5}));
   EXPECT_EQ(scaled.position_m[1], (Vec3{0, -1, 4}));
   EXPECT_EQ(read(dump_head + "ITEM: ATOMS id xu yu zu\n1 2.5 0 0\n2 0 0 1\n", 0.1).position_m[0].x, 2.5);
+  const Bed unwrapped = read(dump_head + "ITEM: ATOMS id xsu ysu zsu\n1 1.5 0.25 0.125\n2 0 0 1\n", 0.1);
+  EXPECT_EQ(unwrapped.position_m[0], (Vec3{3, -0.5, 0.5}));
+  const Bed both =
+      read(dump_head + "ITEM: ATOMS id xu x xs y ys z zu\n1 9 1 9 0 9 0 9\n2 9 1 9 0 9 1 9\n", 0.1);
+  EXPECT_EQ(both.position_m[1], (Vec3{1, 0, 1})) << "x before xu and xs";
+  const Bed upright = read("ITEM: UNITS\nsi\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS xy xz yz pp ff pp\n"
+                           "0 2 0\n-1 1 0.0\n0 4 0\nITEM: ATOMS id x y z\n1 0 0 0\n",
+                           0.1);
+  EXPECT_EQ(upright.periodic, (std::array<bool, 3>{true, false, true})) << "tilted by nothing";
+  EXPECT_EQ(upright.box.max, (Vec3{2, 1, 4}));
   const std::string first = dump_head + "ITEM: ATOMS id x y z\n1 0 0 0\n2 0 0 1\n";
   const Bed last = read(first + "ITEM: TIME\n0.7\n" +
                             "ITEM: TIMESTEP\n800\nITEM: NUMBER OF ATOMS\n1\n"
@@ -135,8 +145,10 @@ TEST_F(Import, BadDumpsAreRefused) {
   EXPECT_EQ(problem_of("ITEM: ATOMS id x y z\n"), ":1: ITEM: ATOMS stands before ITEM: NUMBER OF ATOMS");
   EXPECT_EQ(problem_of("ITEM: NUMBER OF ATOMS\nmany\n"),
             ":2: the number of atoms = \"many\" (must be a number >= 0)");
-  EXPECT_EQ(problem_of("ITEM: BOX BOUNDS xy xz yz pp pp pp\n0 1 0\n"),
-            ":1: the box is tilted (only upright boxes are read)");
+  EXPECT_EQ(problem_of("ITEM: BOX BOUNDS xy xz yz pp pp pp\n0 1 0\n0 1 0.5\n"),
+            ":3: \"0 1 0.5\" (the box is tilted: only upright boxes are read) give x,y,z,radius as CSV");
+  EXPECT_EQ(problem_of("ITEM: UNITS\ncgs\n"),
+            ":2: units = \"cgs\" (lengths must be in metres) convert the dump to SI");
   EXPECT_EQ(problem_of("ITEM: BOX BOUNDS pp pp pp\n2 1\n"),
             ":2: \"2 1\" (box bounds must be two rising numbers)");
 }
