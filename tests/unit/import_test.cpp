@@ -58,6 +58,7 @@ TEST_F(Import, CsvColumnsComeInAnyOrder) {
   EXPECT_EQ(bed.next_id, 3);
   EXPECT_EQ(read("x,y,z,diameter\n0,0,0,8e-4\n").radius_m[0], 4e-4);
   EXPECT_EQ(read("x,y,z\n0,0,0\n", 4e-4).radius_m[0], 4e-4);
+  EXPECT_EQ(read("\"x\",\"y\",\"z\",\"radius\"\n0,0,0,8e-4\n").radius_m[0], 8e-4);
   EXPECT_EQ(read("x,y,z,radius\n").size(), 0u);
   EXPECT_FALSE(read_snapshot(write("x,y,z,radius\n0,0,0,1\n")).has_temperature);
 }
@@ -65,6 +66,10 @@ TEST_F(Import, CsvColumnsComeInAnyOrder) {
 TEST_F(Import, BadCsvIsRefusedLineByLine) {
   const std::string header = "id,x,y,z,radius,temperature\n";
   EXPECT_EQ(problem_of(""), ": is empty; its first line must be x,y,z,radius");
+  EXPECT_EQ(problem_of("x;y;z;radius\n"),
+            ":1: \"x;y;z;radius\" (columns are separated by commas: x,y,z,radius) replace ';'");
+  EXPECT_EQ(problem_of("x\ty\tz\tradius\n"),
+            ":1: \"x\ty\tz\tradius\" (columns are separated by commas: x,y,z,radius) replace '\\t'");
   EXPECT_EQ(problem_of("x,y,radius\n"), ":1: no column z (columns are x, y, radius)");
   EXPECT_EQ(problem_of("x,y,z\n1,2,3\n"),
             ":1: no column radius (columns are x, y, z) add it, or give the radius of all particles");
