@@ -4,11 +4,14 @@
 #include <fmt/core.h>
 
 #include <assimp/Importer.hpp>
+#include <charconv>
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <tuple>
 
 #include "dem/scene/error.h"
+#include "dem/scene/text_lines.h"
 
 namespace granrad {
 
@@ -56,6 +59,26 @@ void check(const Wall& wall, const std::string& file) {
                     file, bad, wall.triangles.size(), first));
 }
 
+/// Assimp reads a word such as nan as 0: every vertex of an ASCII file must be three finite numbers.
+void refuse_words_for_numbers(const std::filesystem::path& file) {
+  TextLines lines(file);
+  std::string_view line;
+  std::vector<std::string_view> words;
+  while (lines.next(line)) {
+    if (!line.starts_with("vertex ")) continue;
+    split_words(line, words);
+    for (std::size_t k = 1; k < words.size(); ++k) {
+      std::string_view text = words[k];
+      if (text.starts_with('+')) text.remove_prefix(1);
+      double value = 0;
+      const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+      if (failure != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+        throw InputError(fmt::format("{}:{}: vertex coordinate = {} (must be a finite number)", file.string(),
+                                     lines.line_number(), words[k]));
+    }
+  }
+}
+
 /// Names of the meshes: those of the nodes that hold them.
 std::map<unsigned, std::string> solid_names(const aiNode& node) {
   std::map<unsigned, std::string> names;
@@ -71,12 +94,13 @@ std::vector<Wall> import_stl(const std::filesystem::path& file, double scale, co
   if (!std::filesystem::is_regular_file(file) || !std::ifstream(file))
     throw IoError(fmt::format("{}: cannot be read", file.string()));
   Assimp::Importer importer;
-  const aiScene* scene = file.extension() == ".stl" || file.extension() == ".STL"
-                             ? importer.ReadFile(file.string(), 0)
-                             : nullptr;
+  if (file.extension() != ".stl" && file.extension() != ".STL")
+    throw InputError(fmt::format("{}: is not an STL file (its name must end in .stl)", file.string()));
+  const aiScene* scene = importer.ReadFile(file.string(), 0);
   if (!scene || scene->mNumMeshes == 0)
     throw InputError(fmt::format("{}: is not an STL file ({})", file.string(),
                                  scene ? "no triangles" : importer.GetErrorString()));
+  refuse_words_for_numbers(file);
   const auto names = solid_names(*scene->mRootNode);
   std::vector<Wall> walls;
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) {

@@ -207,6 +207,8 @@ TEST_F(Import, BadStlIsRefused) {
   EXPECT_THROW(import_stl(folder_ / "none.stl", 1, "w"), IoError);
   EXPECT_THROW(import_stl(write("hello", "text.stl"), 1, "w"), InputError);
   EXPECT_THROW(import_stl(write("", "empty.stl"), 1, "w"), InputError);
+  EXPECT_THROW(import_stl(write("solid a\n" + facet("0 0 0", "1 0 0", "nan 1 0") + "endsolid a\n", "nan.stl"), 1, "w"),
+               InputError);
   try {
     import_stl(write("solid a\n" + facet("0 0 0", "1 0 0", "0 1 0") + facet("0 0 0", "1 0 0", "2 0 0") +
                          "endsolid a\n",
