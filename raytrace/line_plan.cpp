@@ -33,7 +33,7 @@ int more_directions(int directions, double error, double target) {
   const double wanted = std::ceil(directions * factor);
   if (wanted > 16777216)
     throw ThresholdMissed(fmt::format("lines: error {:.3g} after {} directions, {} asked for: out of reach",
-                                     error, directions, target));
+                                      error, directions, target));
   return static_cast<int>(wanted);
 }
 

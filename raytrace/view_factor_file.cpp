@@ -258,9 +258,9 @@ ViewFactorFile read_view_factors(const std::filesystem::path& file) {
     throw InputError(fmt::format("{}: not a view-factor file (no format = \"{}\") make one with vfgen trace",
                                  file.string(), format_name));
   if (const auto version = in.integer_attribute("/", "version"); version != format_version)
-    throw InputError(fmt::format("{}: version = {} (this program reads {}) {}", file.string(), version,
-                                 format_version,
-                                 version > format_version ? "use a newer program" : "trace the snapshot again"));
+    throw InputError(
+        fmt::format("{}: version = {} (this program reads {}) {}", file.string(), version, format_version,
+                    version > format_version ? "use a newer program" : "trace the snapshot again"));
   ViewFactorFile content;
   content.enclosure = read_enclosure(in);
   content.emissivity = in.read<double>("/surfaces/emissivity");

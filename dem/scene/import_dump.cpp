@@ -96,7 +96,9 @@ class DumpReader {
 
   /// Where x or xu is absent: xs or xsu, a part of the box, becomes x.
   static bool take_scaled(std::vector<std::string>& columns, const std::string& x) {
-    const auto place = [&](const std::string& name) { return std::find(columns.begin(), columns.end(), name); };
+    const auto place = [&](const std::string& name) {
+      return std::find(columns.begin(), columns.end(), name);
+    };
     if (place(x) != columns.end() || place(x + "u") != columns.end()) return false;
     const auto wrapped = place(x + "s"), at = wrapped != columns.end() ? wrapped : place(x + "su");
     if (at == columns.end()) return false;

@@ -115,7 +115,8 @@ TEST_F(Vfgen, SaysWhichFileIsMissingWithCode3) {
   // Found before hours of tracing, not after.
   const auto unwritable = vfgen("trace " + two_spheres() + " --walls none.stl -o /proc/none/x.h5");
   EXPECT_EQ(unwritable.text.find("none.stl"), std::string::npos) << unwritable.text;
-  const auto second = vfgen("trace " + two_spheres() + " " + path("a.csv") + " " + path("b.csv") + " -o " + path("x.h5"));
+  const auto second =
+      vfgen("trace " + two_spheres() + " " + path("a.csv") + " " + path("b.csv") + " -o " + path("x.h5"));
   expect_says(second, 3, "a.csv: there is no such file");
   expect_says(second, 3, "b.csv");
   EXPECT_FALSE(fs::exists(path("x_0001.h5")));
@@ -353,7 +354,8 @@ TEST_F(Vfgen, SameBytesForAnyNumberOfThreads) {
   }
 }
 
-// A scalar text of variable length is a str in h5py, one of fixed length is bytes: format == "..." would fail.
+// A scalar text of variable length is a str in h5py, one of fixed length is bytes: format == "..." would
+// fail.
 TEST_F(Vfgen, AttributesAreTextsOfVariableLength) {
   ASSERT_EQ(vfgen("trace " + two_spheres() + " -q -o " + path("a.h5") + " --rays 10").code, 0);
   const auto dump = run("h5dump -a /format -a /method -a /failed " + path("a.h5"));
@@ -365,10 +367,12 @@ TEST_F(Vfgen, AttributesAreTextsOfVariableLength) {
 
 // Planted: periods kept; the sphere beyond the box is folded back into it.
 TEST_F(Vfgen, BoxEndsThePeriodsOfADump) {
-  const auto dump = write("pp.dump",
-                          "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp ff\n0 0.01\n0 "
-                          "0.004\n0 0.004\nITEM: ATOMS id x y z\n1 0.002 0.002 0.002\n2 0.0032 0.002 0.002\n");
-  const auto outcome = vfgen("trace " + dump + " --radius 4e-4 --box 0.003,0.004,0.004 --rays 1000 -o " + path("x.h5"));
+  const auto dump =
+      write("pp.dump",
+            "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp ff\n0 0.01\n0 "
+            "0.004\n0 0.004\nITEM: ATOMS id x y z\n1 0.002 0.002 0.002\n2 0.0032 0.002 0.002\n");
+  const auto outcome =
+      vfgen("trace " + dump + " --radius 4e-4 --box 0.003,0.004,0.004 --rays 1000 -o " + path("x.h5"));
   expect_says(outcome, 0, "1 particles with their centre outside the box were left out");
   const auto enclosure = granrad::read_view_factors(path("x.h5")).enclosure;
   EXPECT_EQ(enclosure.sphere_count(), 1u);
@@ -376,8 +380,8 @@ TEST_F(Vfgen, BoxEndsThePeriodsOfADump) {
 }
 
 TEST_F(Vfgen, AnErrorOutOfReachIsCode4) {
-  expect_says(vfgen("trace " + two_spheres() + " --box 0.0101,0.0104,0.0204 --error 1e-6 -o " + path("x.h5")), 4,
-              "ask for less");
+  expect_says(vfgen("trace " + two_spheres() + " --box 0.0101,0.0104,0.0204 --error 1e-6 -o " + path("x.h5")),
+              4, "ask for less");
   EXPECT_FALSE(fs::exists(path("x.h5")));
 }
 

@@ -18,7 +18,6 @@ namespace fs = std::filesystem;
 
 class Import : public testing::Test {
  protected:
-
   fs::path write(const std::string& text, const std::string& name = "file") const {
     return folder_.write(name, text);
   }
@@ -120,9 +119,10 @@ TEST_F(Import, DumpColumnsComeByName) {
   const Bed both =
       read(dump_head + "ITEM: ATOMS id xu x xs y ys z zu\n1 9 1 9 0 9 0 9\n2 9 1 9 0 9 1 9\n", 0.1);
   EXPECT_EQ(both.position_m[1], (Vec3{1, 0, 1})) << "x before xu and xs";
-  const Bed upright = read("ITEM: UNITS\nsi\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS xy xz yz pp ff pp\n"
-                           "0 2 0\n-1 1 0.0\n0 4 0\nITEM: ATOMS id x y z\n1 0 0 0\n",
-                           0.1);
+  const Bed upright = read(
+      "ITEM: UNITS\nsi\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS xy xz yz pp ff pp\n"
+      "0 2 0\n-1 1 0.0\n0 4 0\nITEM: ATOMS id x y z\n1 0 0 0\n",
+      0.1);
   EXPECT_EQ(upright.periodic, (std::array<bool, 3>{true, false, true})) << "tilted by nothing";
   EXPECT_EQ(upright.box.max, (Vec3{2, 1, 4}));
   const std::string first = dump_head + "ITEM: ATOMS id x y z\n1 0 0 0\n2 0 0 1\n";
@@ -207,8 +207,9 @@ TEST_F(Import, BadStlIsRefused) {
   EXPECT_THROW(import_stl(folder_ / "none.stl", 1, "w"), IoError);
   EXPECT_THROW(import_stl(write("hello", "text.stl"), 1, "w"), InputError);
   EXPECT_THROW(import_stl(write("", "empty.stl"), 1, "w"), InputError);
-  EXPECT_THROW(import_stl(write("solid a\n" + facet("0 0 0", "1 0 0", "nan 1 0") + "endsolid a\n", "nan.stl"), 1, "w"),
-               InputError);
+  EXPECT_THROW(
+      import_stl(write("solid a\n" + facet("0 0 0", "1 0 0", "nan 1 0") + "endsolid a\n", "nan.stl"), 1, "w"),
+      InputError);
   try {
     import_stl(write("solid a\n" + facet("0 0 0", "1 0 0", "0 1 0") + facet("0 0 0", "1 0 0", "2 0 0") +
                          "endsolid a\n",
