@@ -191,6 +191,19 @@ TEST_F(Import, StlKeepsSolidsAndMergesVertices) {
   EXPECT_EQ(two[1].name, "wall.b");
 }
 
+// Single precision moves the corners by up to 4e-6 m here, and particles at the wall lie behind it.
+TEST_F(Import, TextStlKeepsItsDigitsFarFromTheOrigin) {
+  const auto walls = import_stl(
+      write("SOLID a\r\n" + facet("100.0001 100 +100", "100.01 1.00004e2 100", "100 100.01 100") +
+                facet("100.0001 100 100", "100 100.01000000000001 100", "100 100.02 100") + "endsolid a\n",
+            "far.stl"),
+      1, "w");
+  ASSERT_EQ(walls.size(), 1u);
+  EXPECT_EQ(walls[0].vertices.size(), 4u) << "the last digit of a corner aside, it is one";
+  EXPECT_EQ(walls[0].vertices[0], (Vec3{100.0001, 100, 100}));
+  EXPECT_EQ(walls[0].vertices[1], (Vec3{100.01, 100.004, 100}));
+}
+
 TEST_F(Import, BinaryStlIsRead) {
   std::string bytes(80, ' ');
   const std::uint32_t count = 1;
@@ -207,9 +220,23 @@ TEST_F(Import, BadStlIsRefused) {
   EXPECT_THROW(import_stl(folder_ / "none.stl", 1, "w"), IoError);
   EXPECT_THROW(import_stl(write("hello", "text.stl"), 1, "w"), InputError);
   EXPECT_THROW(import_stl(write("", "empty.stl"), 1, "w"), InputError);
-  EXPECT_THROW(
-      import_stl(write("solid a\n" + facet("0 0 0", "1 0 0", "nan 1 0") + "endsolid a\n", "nan.stl"), 1, "w"),
-      InputError);
+  const auto refused = [&](const std::string& text, const std::string& why) {
+    try {
+      import_stl(write(text, "bad.stl"), 1, "w");
+      ADD_FAILURE() << text;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+    }
+  };
+  const std::string good = facet("0 0 0", "1 0 0", "0 1 0");
+  refused("solid a\n" + facet("0 0 0", "1 0 0", "nan 1 0") + "endsolid a\n", ":6: vertex coordinate = nan");
+  refused("solid a\n" + facet("0 0 0", "1 0 0", "0 1") + "endsolid a\n",
+          ":6: a vertex must be three numbers");
+  refused("solid a\n" + good, "cut short");
+  refused("solid a\nfacet\nvertex 0 0 0\nendfacet\n", ":4: a facet must have three vertices");
+  refused("solid a\n" + good + "sphere\n", ":9: is not a line");
+  refused("x,y,z,radius\n", "is not an STL file");
+  refused("solid a\nendsolid a\n", "has no triangles");
   try {
     import_stl(write("solid a\n" + facet("0 0 0", "1 0 0", "0 1 0") + facet("0 0 0", "1 0 0", "2 0 0") +
                          "endsolid a\n",
