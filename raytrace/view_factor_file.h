@@ -9,6 +9,9 @@
 
 namespace granrad {
 
+/// Other versions are refused.
+inline constexpr std::int64_t view_factor_version = 2;
+
 /// A traced and closed enclosure as it is kept on file.
 ///
 /// HDF5, version 2; N surfaces = spheres, walls, surroundings; SI units:
@@ -51,7 +54,7 @@ struct ViewFactorFile {
 /// Writes to a temporary name, fsyncs, renames. Throws IoError.
 void write_view_factors(const std::filesystem::path& file, const ViewFactorFile& content);
 
-/// Throws IoError (cannot be read), InputError (not such a file, or a newer version).
+/// Throws IoError (cannot be read), InputError (not such a file, or of another version).
 ViewFactorFile read_view_factors(const std::filesystem::path& file);
 
 }  // namespace granrad
