@@ -12,7 +12,7 @@ namespace {
 std::unique_ptr<Engine> make_engine(const Scene& scene, const Bed& bed, double step_s, int threads) {
   if (scene.engine == EngineKind::liggghts)
     throw InputError("dem.engine = \"liggghts\" (this build has no LIGGGHTS engine) try engine = \"native\"");
-  return make_native_engine(bed, scene.gravity_m_s2, step_s, threads);
+  return make_native_engine(bed, scene.gravity_m_s2, step_s, threads, scene.precision);
 }
 
 }  // namespace

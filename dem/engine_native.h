@@ -15,8 +15,12 @@ namespace granrad {
 /// seen half a step later, and a Bed (position, velocity and springs at one instant) is all it needs to go
 /// on: cutting a run into pieces changes no bit. Neither do threads, list schedules and instruction sets.
 ///
+/// Precision::mixed works the law of contacts between particles in single precision, eight at once:
+/// positions, their differences, velocities between steps, the sums of forces and walls stay double, springs
+/// and the velocities the law sees are rounded to single. Everything said above holds of its bits as well.
+///
 /// threads 0: OpenMP's default. bed.time_s = bed.step x step_s after each advance.
 std::unique_ptr<Engine> make_native_engine(const Bed& bed, const Vec3& gravity_m_s2, double step_s,
-                                           int threads = 0);
+                                           int threads = 0, Precision precision = Precision::full);
 
 }  // namespace granrad

@@ -11,6 +11,7 @@ struct RowView {
                         ///< velocity may move it until the next refresh)
   double* velocity;     ///< [8] v, 0, omega, 0
   std::int64_t* force;  ///< [8] F, 0, torque, 0, in fixed point; zero between steps
+  float* motion;        ///< [8] the velocity rows rounded, for mixed precision; nullptr in double
 };
 
 /// Contacts between two rows, or a row and a plane. `count` is a multiple of 8; entries up to 64 beyond it
@@ -69,18 +70,21 @@ struct MoveConstants {
 /// An overlap deeper than this fraction of the (smaller) radius is beyond the model.
 inline constexpr double deepest_overlap = 0.5;
 
-/// The inner loops, compiled once for each instruction set from kernel_bodies.h.
+using PairKernel = double (*)(const RowView&, const ContactView&, const StepConstants&);
+
+/// The inner loops, compiled once for each instruction set from kernel_bodies.h and pair_bodies.h.
 /// Contact functions return the largest `overlap - deepest_overlap x radius` met, m.
 struct Kernels {
   const char* name;
   /// Adds forces to both rows; `pair_contacts_first` to the first row only (the second has another owner).
-  double (*pair_contacts)(const RowView&, const ContactView&, const StepConstants&);
-  double (*pair_contacts_first)(const RowView&, const ContactView&, const StepConstants&);
+  PairKernel pair_contacts, pair_contacts_first;
+  /// The same with the law in single precision and velocities from `RowView::motion`.
+  PairKernel mixed_contacts, mixed_contacts_first;
   /// `second` numbers planes.
   double (*plane_contacts)(const RowView&, const ContactView&, const PlaneView&, const StepConstants&);
-  /// v += F dt/m + g dt, omega likewise, x += v dt/2, forces cleared, rows [begin, end). Unless `last`, x
-  /// moves another half step, to the middle of the next one. True if a speed limit is broken (or not a
-  /// number).
+  /// v += F dt/m + g dt, omega likewise (and `motion`), x += v dt/2, forces cleared, rows [begin, end).
+  /// Unless `last`, x moves another half step, to the middle of the next one. True if a speed limit is broken
+  /// (or not a number).
   bool (*move)(const RowView&, std::int64_t begin, std::int64_t end, const MoveConstants&, bool last);
   /// Keeps the pairs closer than the sum of their reaches and of what they move towards each other in life_s:
   /// rows into `first`, `second`, their numbers into `source`. `count` is padded to a multiple of 8. Returns

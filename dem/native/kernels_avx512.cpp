@@ -3,7 +3,8 @@
 
 namespace granrad::native {
 const Kernels& avx512_kernels() {
-  static constexpr Kernels kernels = KernelBodies<Avx512Pack>::table("avx512");
+  static const Kernels kernels = KernelBodies<Avx512Pack>::table("avx512", avx2_kernels().mixed_contacts,
+                                                                 avx2_kernels().mixed_contacts_first);
   return kernels;
 }
 }  // namespace granrad::native

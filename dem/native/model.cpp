@@ -22,7 +22,8 @@ double power_of_two_below(double x) {
 
 }  // namespace
 
-Model make_model(const Bed& bed, Rows& rows, const Periods& periods, const Vec3& gravity, double step_s) {
+Model make_model(const Bed& bed, Rows& rows, const Periods& periods, const Vec3& gravity, double step_s,
+                 Precision precision) {
   Model m;
   StepConstants& c = m.constants;
   c.step_s = step_s;
@@ -48,7 +49,9 @@ Model make_model(const Bed& bed, Rows& rows, const Periods& periods, const Vec3&
   }
   const double size_ratio = m.largest_radius / m.smallest_radius;
   const double neighbours = std::max(16.0, 4 * (1 + size_ratio) * (1 + size_ratio));
-  c.force_scale = power_of_two_below(0x1p62 / (force * neighbours));
+  double units = 0x1p62 / (force * neighbours);
+  if (precision == Precision::mixed) units = std::min(units, 0x1p50 / force);
+  c.force_scale = power_of_two_below(units);
   c.torque_scale = power_of_two_below(c.force_scale / (2 * friction * m.largest_radius));
 
   const auto kick_of = [&](std::int64_t i) {

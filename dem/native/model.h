@@ -4,6 +4,7 @@
 #include "dem/native/kernels.h"
 #include "dem/native/rows.h"
 #include "dem/scene/bed.h"
+#include "dem/scene/scene.h"
 
 namespace granrad::native {
 
@@ -19,8 +20,10 @@ struct Model {
   double smallest_radius = 0, largest_radius = 0;
 };
 
-/// Also fills rows.kick where particles differ. The fixed-point scale leaves room for as many contacts as
-/// fit around the largest sphere, each at the deepest overlap and the highest speed allowed.
-Model make_model(const Bed& bed, Rows& rows, const Periods& periods, const Vec3& gravity_m_s2, double step_s);
+/// In mixed precision a single force stays below 2^51 units, which keeps all 24 bits of a force of 1e-6 of
+/// the largest. Also fills rows.kick where particles differ. The fixed-point scale leaves room for as many
+/// contacts as fit around the largest sphere, each at the deepest overlap and the highest speed allowed.
+Model make_model(const Bed& bed, Rows& rows, const Periods& periods, const Vec3& gravity_m_s2, double step_s,
+                 Precision precision = Precision::full);
 
 }  // namespace granrad::native

@@ -91,7 +91,9 @@ void NativeEngine::Impl::load(const Bed& bed) {
   }
   load_walls(bed);
   const auto change = transfer.load(bed, rows, 0.5 * step_s, wanted);
-  if (change == BedTransfer::Change::particles) model = make_model(bed, rows, *periods, gravity, step_s);
+  if (options.precision == Precision::mixed) rows.motion.resize(rows.velocity.size());
+  if (change == BedTransfer::Change::particles)
+    model = make_model(bed, rows, *periods, gravity, step_s, options.precision);
   if (change >= BedTransfer::Change::memory) lists->restart(BedTransfer::memories(bed));
   if (change == BedTransfer::Change::moved) lists->touch();
   model.move.kick = rows.uniform ? model.kick_row.data() : rows.kick.data();
@@ -106,6 +108,9 @@ std::int64_t NativeEngine::Impl::run(std::int64_t steps, bool finishes, bool& li
   limit_broken = false;
   model.move.kick = rows.uniform ? model.kick_row.data() : rows.kick.data();
   model.move.reference = rows.reference.data();
+  const bool mixed = options.precision == Precision::mixed;
+  const auto all_contacts = mixed ? kernels.mixed_contacts : kernels.pair_contacts;
+  const auto first_contacts = mixed ? kernels.mixed_contacts_first : kernels.pair_contacts_first;
   StepBarrier barrier(static_cast<int>(shares.size()));
 #pragma omp parallel num_threads(static_cast <int>(shares.size()))
   {
@@ -113,10 +118,12 @@ std::int64_t NativeEngine::Impl::run(std::int64_t steps, bool finishes, bool& li
     const RowView view = rows.view();
     double deepest = -1;
     bool stop = false;
+    rows.round_motion(share.range.begin, share.range.end);
+    barrier.wait();
     for (std::int64_t k = 0; k < steps && !stop; ++k) {
       deepest = std::max(
-          {deepest, kernels.pair_contacts(view, share.own.view(), model.constants),
-           kernels.pair_contacts_first(view, share.cross.view(), model.constants),
+          {deepest, all_contacts(view, share.own.view(), model.constants),
+           first_contacts(view, share.cross.view(), model.constants),
            share.walls.add_forces(kernels, *surface, rows, *periods, model.constants, transfer.materials())});
       barrier.wait();
       share.too_fast =
@@ -225,7 +232,8 @@ EngineCounts NativeEngine::counts() const {
   c.rebuilds = impl_->lists->rebuilds, c.refreshes = impl_->lists->refreshes;
   c.list_reads = impl_->list_reads;
   const auto& r = impl_->rows;
-  const double rows = 8.0 * double(r.position.capacity() + r.velocity.capacity() + r.force.capacity() +
+  const double rows = 4.0 * double(r.motion.capacity()) +
+                      8.0 * double(r.position.capacity() + r.velocity.capacity() + r.force.capacity() +
                                    r.kick.capacity() + r.radius.capacity() + r.mass.capacity()) +
                       4.0 * double(3 * r.bed_index.capacity());
   c.bytes_per_particle = r.count > 0 ? (rows + double(impl_->lists->bytes())) / double(r.count) : 0;
@@ -237,9 +245,9 @@ EngineCounts NativeEngine::counts() const {
 namespace granrad {
 
 std::unique_ptr<Engine> make_native_engine(const Bed& bed, const Vec3& gravity_m_s2, double step_s,
-                                           int threads) {
+                                           int threads, Precision precision) {
   native::EngineOptions options;
-  options.threads = threads;
+  options.threads = threads, options.precision = precision;
   return std::make_unique<native::NativeEngine>(bed, gravity_m_s2, step_s, options);
 }
 

@@ -3,6 +3,7 @@
 
 #include "dem/engine.h"
 #include "dem/native/contact_lists.h"
+#include "dem/scene/scene.h"
 
 namespace granrad::native {
 
@@ -10,6 +11,7 @@ namespace granrad::native {
 struct EngineOptions {
   int threads = 0;  ///< 0: OpenMP's default
   ListSchedule schedule{};
+  Precision precision = Precision::full;
   const Kernels* kernels = nullptr;  ///< nullptr: select_kernels()
 };
 

@@ -4,6 +4,11 @@
 
 namespace granrad::native {
 
+void Rows::round_motion(std::int64_t begin, std::int64_t end) {
+  if (motion.empty()) return;
+  for (std::int64_t k = 8 * begin; k < 8 * end; ++k) motion[k] = static_cast<float>(velocity[k]);
+}
+
 Periods::Periods(const Bed& bed) : origin(bed.box.min) {
   for (int a = 0; a < 3; ++a) {
     if (!bed.periodic[a]) continue;

@@ -12,6 +12,17 @@ struct Avx2Pack {
   using M = __m256d;
   using I = __m256i;
 
+  // As a pack of the law (see pair_bodies.h): double precision needs no second kind of number.
+  using Wide = Avx2Pack;
+  static constexpr int halves = 1;
+  GRANRAD_INLINE V narrow(const V a[1]) { return a[0]; }
+  GRANRAD_INLINE void widen(V a, V out[1]) { out[0] = a; }
+  GRANRAD_INLINE V overlap(V sum, V distance, V) { return sum - distance; }
+  template <class Rows>
+  GRANRAD_INLINE const double* motion(const Rows& rows) {
+    return rows.velocity;
+  }
+
   GRANRAD_INLINE V set(double x) { return _mm256_set1_pd(x); }
   GRANRAD_INLINE V load(const double* p) { return _mm256_loadu_pd(p); }
   GRANRAD_INLINE void store(double* p, V a) { _mm256_storeu_pd(p, a); }
@@ -125,6 +136,9 @@ struct Avx2Pack {
   GRANRAD_INLINE Row row_load(const double* p) { return {_mm256_load_pd(p), _mm256_load_pd(p + 4)}; }
   GRANRAD_INLINE void row_store(double* p, const Row& r) {
     _mm256_store_pd(p, r.low), _mm256_store_pd(p + 4, r.high);
+  }
+  GRANRAD_INLINE void row_narrow(float* p, const Row& r) {
+    _mm_store_ps(p, _mm256_cvtpd_ps(r.low)), _mm_store_ps(p + 4, _mm256_cvtpd_ps(r.high));
   }
   GRANRAD_INLINE Row row_take(std::int64_t* p) {
     __m256i* q = (__m256i*)p;

@@ -12,6 +12,17 @@ struct Avx512Pack {
   using M = __mmask8;
   using I = __m512i;
 
+  // As a pack of the law (see pair_bodies.h): double precision needs no second kind of number.
+  using Wide = Avx512Pack;
+  static constexpr int halves = 1;
+  GRANRAD_INLINE V narrow(const V a[1]) { return a[0]; }
+  GRANRAD_INLINE void widen(V a, V out[1]) { out[0] = a; }
+  GRANRAD_INLINE V overlap(V sum, V distance, V) { return sum - distance; }
+  template <class Rows>
+  GRANRAD_INLINE const double* motion(const Rows& rows) {
+    return rows.velocity;
+  }
+
   GRANRAD_INLINE V set(double x) { return _mm512_set1_pd(x); }
   GRANRAD_INLINE V load(const double* p) { return _mm512_loadu_pd(p); }
   GRANRAD_INLINE void store(double* p, V a) { _mm512_storeu_pd(p, a); }
@@ -127,6 +138,7 @@ struct Avx512Pack {
   using Row = __m512d;
   GRANRAD_INLINE Row row_load(const double* p) { return _mm512_load_pd(p); }
   GRANRAD_INLINE void row_store(double* p, Row r) { _mm512_store_pd(p, r); }
+  GRANRAD_INLINE void row_narrow(float* p, Row r) { _mm256_store_ps(p, _mm512_cvtpd_ps(r)); }
   GRANRAD_INLINE Row row_take(std::int64_t* p) {
     const Row r = _mm512_cvtepi64_pd(_mm512_load_si512(p));
     _mm512_store_si512(p, _mm512_setzero_si512());

@@ -16,6 +16,17 @@ struct ScalarPack {
   using M = bool;          ///< a mask, one truth value a lane
   using I = std::int64_t;  ///< `width` integers
 
+  // As a pack of the law (see pair_bodies.h): double precision needs no second kind of number.
+  using Wide = ScalarPack;
+  static constexpr int halves = 1;
+  GRANRAD_INLINE V narrow(const V a[1]) { return a[0]; }
+  GRANRAD_INLINE void widen(V a, V out[1]) { out[0] = a; }
+  GRANRAD_INLINE V overlap(V sum, V distance, V) { return sum - distance; }
+  template <class Rows>
+  GRANRAD_INLINE const double* motion(const Rows& rows) {
+    return rows.velocity;
+  }
+
   GRANRAD_INLINE V set(double x) { return x; }
   GRANRAD_INLINE V load(const double* p) { return *p; }
   GRANRAD_INLINE void store(double* p, V a) { *p = a; }
@@ -84,6 +95,9 @@ struct ScalarPack {
   }
   GRANRAD_INLINE void row_store(double* p, const Row& r) {
     for (int k = 0; k < 8; ++k) p[k] = r.lane[k];
+  }
+  GRANRAD_INLINE void row_narrow(float* p, const Row& r) {
+    for (int k = 0; k < 8; ++k) p[k] = static_cast<float>(r.lane[k]);
   }
   /// Reads a force row as doubles and clears it.
   GRANRAD_INLINE Row row_take(std::int64_t* p) {

@@ -30,6 +30,9 @@ struct FeedSettings {
 
 enum class EngineKind { native, liggghts, none };
 
+/// Of the contact law between particles: double, or single with all else in double (dem/engine_native.h).
+enum class Precision { full, mixed };
+
 /// The flow part of what the user wrote: SI, checked, complete. Each room reads its own part from the same
 /// document (heat: coupling/heat_scene.h).
 struct Scene {
@@ -47,6 +50,7 @@ struct Scene {
   std::filesystem::path particle_file;  ///< empty: particles come from the feed
   FeedSettings feed;
   EngineKind engine = EngineKind::native;
+  Precision precision = Precision::full;
   double step_s = 0;  ///< DEM step; 0: the largest allowed by the step limits
 };
 

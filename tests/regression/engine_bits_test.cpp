@@ -1,8 +1,9 @@
 // Requirement: the state after a run depends on the Bed alone, to the last bit: not on threads, on how often
 // lists are made anew, on being cut into pieces or restarted, nor on the instruction set.
 //
-// Planted: springs forgotten when lists are rebuilt; the rebuild schedules and the restart see it. Rows in fast
-// flight left out of the near search; the schedule that renews everything at every step sees it.
+// Planted: springs forgotten when lists are rebuilt; the rebuild schedules and the restart see it. Rows in
+// fast flight left out of the near search; the schedule that renews everything at every step sees it. Rounded
+// velocities of mixed precision left as they were before a sort; the rebuild schedules see it.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -74,18 +75,26 @@ void expect_same(const Bed& a, const Bed& b) {
   EXPECT_EQ(a.time_s, b.time_s);
 }
 
-EngineOptions options_of(int threads, int refresh = 16, int rebuild = 0,
-                         const native::Kernels* kernels = nullptr) {
-  EngineOptions o;
-  o.threads = threads, o.schedule = {refresh, rebuild}, o.kernels = kernels;
-  return o;
-}
+struct Way {
+  bool varied;
+  Precision precision;
+};
 
-class EngineBits : public testing::TestWithParam<bool> {};
+class EngineBits : public testing::TestWithParam<Way> {
+ protected:
+  Bed start() const { return rain(GetParam().varied); }
+  EngineOptions options_of(int threads, int refresh = 16, int rebuild = 0,
+                           const native::Kernels* kernels = nullptr) const {
+    EngineOptions o;
+    o.threads = threads, o.schedule = {refresh, rebuild}, o.kernels = kernels;
+    o.precision = GetParam().precision;
+    return o;
+  }
+};
 
 TEST_P(EngineBits, do_not_depend_on_anything_but_the_bed) {
   const std::int64_t steps = 1200;
-  const Bed start = rain(GetParam());
+  const Bed start = this->start();
   const Bed want = after(start, steps, options_of(1));
   EXPECT_GT(want.contacts.size(), 20u);
   {
@@ -112,7 +121,7 @@ TEST_P(EngineBits, do_not_depend_on_anything_but_the_bed) {
 
 TEST_P(EngineBits, of_fast_spheres_shot_into_slow_ones) {
   const std::int64_t steps = 400;
-  Bed start = rain(GetParam());
+  Bed start = this->start();
   for (std::size_t i = 0; i < start.size(); ++i) {
     start.velocity_m_s[i] = {0, 0, 0};
     if (i % 12 == 0) start.velocity_m_s[i] = {i % 24 ? 1.5 : -1.5, 0.5, -2};
@@ -124,8 +133,10 @@ TEST_P(EngineBits, of_fast_spheres_shot_into_slow_ones) {
   expect_same(want, after(start, steps, options_of(2, 16, 50), 37));
 }
 
-INSTANTIATE_TEST_SUITE_P(Alike, EngineBits, testing::Values(false));
-INSTANTIATE_TEST_SUITE_P(Varied, EngineBits, testing::Values(true));
+INSTANTIATE_TEST_SUITE_P(Alike, EngineBits, testing::Values(Way{false, Precision::full}));
+INSTANTIATE_TEST_SUITE_P(Varied, EngineBits, testing::Values(Way{true, Precision::full}));
+INSTANTIATE_TEST_SUITE_P(AlikeMixed, EngineBits, testing::Values(Way{false, Precision::mixed}));
+INSTANTIATE_TEST_SUITE_P(VariedMixed, EngineBits, testing::Values(Way{true, Precision::mixed}));
 
 }  // namespace
 }  // namespace granrad

@@ -1,0 +1,180 @@
+#pragma once
+#include "dem/native/kernels.h"
+
+// The inner loop over contacts between particles for a pack S, in double or mixed precision. Nothing from the
+// standard library is used here: an inline function compiled for AVX-512 must never be the copy the linker
+// keeps for everyone.
+namespace granrad::native {
+
+inline constexpr std::int64_t chunk =
+    32;  ///< contacts between gathering and scattering; their data stays in L1
+
+/// S works the law in its own numbers V. Differences of positions, the test for touching and the sums are
+/// double in any case, in S::halves packs of D = S::Wide (one, S itself, in double precision).
+template <class S>
+struct PairBodies {
+  using D = typename S::Wide;
+  using V = typename S::V;
+  static constexpr int W = S::width, H = S::halves;
+  static constexpr std::int64_t packs = chunk / W;
+
+  struct Gathered {
+    V away[3], square, excess, velocity[3], spin[3], other_spin[3];
+  };
+  struct Scattered {
+    typename D::I force[H][3], torque[H][3], other_torque[H][3];
+    bool live;
+  };
+
+  GRANRAD_INLINE HertzMindlin<V> broadcast(const HertzMindlin<double>& c) {
+    return {S::set(c.effective_radius),   S::set(c.normal),   S::set(c.tangential), S::set(c.normal_damping),
+            S::set(c.tangential_damping), S::set(c.friction), S::set(c.rolling)};
+  }
+  GRANRAD_INLINE const double* column(const ContactView& c, int n, std::int64_t k) {
+    return c.varied + n * c.stride + k;
+  }
+  GRANRAD_INLINE HertzMindlin<V> varied_law(const ContactView& c, std::int64_t k) {
+    const auto value = [&](int n) { return S::load(column(c, n, k)); };
+    return {value(effective_radius),   value(normal),   value(tangential), value(normal_damping),
+            value(tangential_damping), value(friction), value(rolling)};
+  }
+  GRANRAD_INLINE double largest(V v) {
+    double lane[W], m = -1e300;
+    S::store(lane, v);
+    for (double x : lane) m = x > m ? x : m;
+    return m;
+  }
+  template <class P, bool periodic>
+  GRANRAD_INLINE void nearest_image(const StepConstants& k, typename P::V d[3]) {
+    if constexpr (periodic)
+      for (int a = 0; a < 3; ++a) d[a] -= P::set(k.period[a]) * P::round(d[a] * P::set(k.inverse_period[a]));
+  }
+  GRANRAD_INLINE void to_fixed3(const V v[3], double scale, typename D::I out[H][3]) {
+    typename D::V wide[H];
+    for (int a = 0; a < 3; ++a) {
+      S::widen(v[a], wide);
+      for (int h = 0; h < H; ++h) out[h][a] = S::to_fixed(wide[h] * D::set(scale));
+    }
+  }
+
+  /// The vector from j to i, its square, and by how much the square of the radii's sum exceeds that.
+  template <bool periodic, bool varied>
+  GRANRAD_INLINE void gather_positions(const RowView& rows, const ContactView& c, const StepConstants& k,
+                                       std::int64_t at, Gathered& in) {
+    typename D::V away[3][H], square[H], excess[H];
+    for (int h = 0; h < H; ++h) {
+      const std::int64_t from = at + h * D::width;
+      typename D::V d[4], sum = D::set(2 * k.radius);
+      D::pair_positions(rows.position, c.first + from, c.second + from, d);
+      nearest_image<D, periodic>(k, d);
+      if constexpr (varied)
+        sum = D::load(column(c, radius_first, from)) + D::load(column(c, radius_second, from));
+      for (int a = 0; a < 3; ++a) away[a][h] = d[a];
+      square[h] = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+      excess[h] = sum * sum - square[h];
+    }
+    for (int a = 0; a < 3; ++a) in.away[a] = S::narrow(away[a]);
+    in.square = S::narrow(square), in.excess = S::narrow(excess);
+  }
+
+  template <bool varied>
+  GRANRAD_INLINE void contact(const ContactView& c, const StepConstants& constants,
+                              const HertzMindlin<V>& uniform, std::int64_t k, const Gathered& in,
+                              Scattered& out, V& deepest) {
+    const V half = S::set(0.5);
+    out.live = S::any(S::less(V{}, in.excess));
+    if (!out.live) {
+      for (auto* s : c.displacement) S::store(s + k, V{});
+      return;
+    }
+    V ri, rj;
+    if constexpr (varied)
+      ri = S::load(column(c, radius_first, k)), rj = S::load(column(c, radius_second, k));
+    else
+      ri = rj = S::set(constants.radius);
+    const V distance = S::sqrt(in.square), inverse = S::set(1.0) / distance;
+    ContactState<S> state;
+    state.overlap = S::overlap(ri + rj, distance, in.excess);
+    const V arm_i = ri - half * state.overlap, arm_j = rj - half * state.overlap;
+    for (int a = 0; a < 3; ++a) {
+      state.normal[a] = in.away[a] * inverse;
+      state.velocity[a] = in.velocity[a];
+      state.arm_spin[a] = varied ? arm_i * in.spin[a] + arm_j * in.other_spin[a] : arm_i * in.spin[a];
+      state.displacement[a] = S::load(c.displacement[a] + k);
+    }
+    const HertzMindlin<V> law = varied ? varied_law(c, k) : uniform;
+    const auto result = contact_force<S>(law, S::set(constants.step_s), state);
+    const V smaller = varied ? S::select(S::less(ri, rj), ri, rj) : ri;
+    deepest = S::max(deepest, state.overlap - S::set(deepest_overlap) * smaller);
+    for (int a = 0; a < 3; ++a) S::store(c.displacement[a] + k, state.displacement[a]);
+    to_fixed3(result.force, constants.force_scale, out.force);
+    V ti[3], tj[3];
+    for (int a = 0; a < 3; ++a) ti[a] = -arm_i * result.moment[a];
+    if constexpr (varied) {
+      V w[3], roll[3];
+      for (int a = 0; a < 3; ++a) w[a] = in.spin[a] - in.other_spin[a];
+      rolling_torque<S>(law, result.elastic, state.normal, w, roll);
+      for (int a = 0; a < 3; ++a) tj[a] = -arm_j * result.moment[a] - roll[a], ti[a] += roll[a];
+      to_fixed3(tj, constants.torque_scale, out.other_torque);
+    }
+    to_fixed3(ti, constants.torque_scale, out.torque);
+  }
+
+  template <bool varied, bool first_only>
+  GRANRAD_INLINE void scatter(const RowView& rows, const ContactView& c, std::int64_t at,
+                              const Scattered& out) {
+    for (int h = 0; h < H; ++h) {
+      const std::int32_t *i = c.first + at + h * D::width, *j = c.second + at + h * D::width;
+      const auto* f = out.force[h];
+      if constexpr (first_only || varied) D::add_one(rows.force, i, f, out.torque[h]);
+      if constexpr (!first_only && varied) {
+        const typename D::I opposite[3] = {-f[0], -f[1], -f[2]};
+        D::add_one(rows.force, j, opposite, out.other_torque[h]);
+      }
+      if constexpr (!first_only && !varied) D::add_pair(rows.force, i, j, f, out.torque[h]);
+    }
+  }
+
+  /// In chunks of 32 contacts: gather the rows, work the law, scatter the forces. Three short loops keep the
+  /// loads, the arithmetic and the read-modify-writes of different packs from waiting for each other.
+  template <bool periodic, bool varied, bool first_only>
+  static double loop(const RowView& rows, const ContactView& c, const StepConstants& constants) {
+    Gathered in[packs];
+    Scattered out[packs];
+    const HertzMindlin<V> uniform = broadcast(constants.pair);
+    const auto* motion = S::motion(rows);
+    V deepest = S::set(-1.0);
+    for (std::int64_t begin = 0; begin < c.count; begin += chunk) {
+      const std::int64_t left = (c.count - begin) / W, n = left < packs ? left : packs;
+      for (std::int64_t q = 0; q < n; ++q) {
+        const std::int64_t at = begin + q * W;
+        const std::int32_t *i = c.first + at, *j = c.second + at;
+        for (int l = 0; l < W; ++l) {
+          const std::int64_t ahead = j[chunk + l];
+          D::prefetch(rows.position + 4 * ahead);
+          D::prefetch(motion + 8 * ahead);
+          if (!first_only) D::prefetch(rows.force + 8 * ahead);
+        }
+        gather_positions<periodic, varied>(rows, c, constants, at, in[q]);
+        if constexpr (varied)
+          S::pair_velocities_apart(motion, i, j, in[q].velocity, in[q].spin, in[q].other_spin);
+        else
+          S::pair_velocities(motion, i, j, in[q].velocity, in[q].spin);
+      }
+      for (std::int64_t q = 0; q < n; ++q)
+        contact<varied>(c, constants, uniform, begin + q * W, in[q], out[q], deepest);
+      for (std::int64_t q = 0; q < n; ++q)
+        if (out[q].live) scatter<varied, first_only>(rows, c, begin + q * W, out[q]);
+    }
+    return largest(deepest);
+  }
+
+  template <bool first_only>
+  static double contacts(const RowView& r, const ContactView& c, const StepConstants& k) {
+    if (c.varied)
+      return k.periodic ? loop<true, true, first_only>(r, c, k) : loop<false, true, first_only>(r, c, k);
+    return k.periodic ? loop<true, false, first_only>(r, c, k) : loop<false, false, first_only>(r, c, k);
+  }
+};
+
+}  // namespace granrad::native

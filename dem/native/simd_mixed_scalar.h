@@ -1,0 +1,49 @@
+#pragma once
+#include "dem/native/simd_scalar.h"
+
+namespace granrad::native {
+
+/// The law of a single contact in single precision: a pack for PairBodies with the operations of ScalarPack
+/// that the law needs. Columns in memory stay double; what is stored there are floats.
+struct ScalarMixed {
+  static constexpr int width = 1;
+  using V = float;
+  using M = bool;
+  using Wide = ScalarPack;
+  static constexpr int halves = 1;
+
+  GRANRAD_INLINE V set(double x) { return static_cast<float>(x); }
+  GRANRAD_INLINE V load(const double* p) { return static_cast<float>(*p); }
+  GRANRAD_INLINE void store(double* p, V a) { *p = a; }
+  GRANRAD_INLINE V sqrt(V a) { return __builtin_sqrtf(a); }
+  GRANRAD_INLINE V abs(V a) { return __builtin_fabsf(a); }
+  GRANRAD_INLINE V max(V a, V b) { return a > b ? a : b; }
+  GRANRAD_INLINE M less(V a, V b) { return a < b; }
+  GRANRAD_INLINE V select(M m, V a, V b) { return m ? a : b; }
+  GRANRAD_INLINE V keep(M m, V a) { return m ? a : 0.0f; }
+  GRANRAD_INLINE bool any(M m) { return m; }
+
+  GRANRAD_INLINE V narrow(const double a[1]) { return static_cast<float>(a[0]); }
+  GRANRAD_INLINE void widen(V a, double out[1]) { out[0] = a; }
+  /// To the nearest integer, ties to even, of |a| < 2^51: enough for forces of 24 bits.
+  GRANRAD_INLINE std::int64_t to_fixed(double a) { return ScalarPack::to_fixed(a); }
+  /// sum - distance without its cancellation: (sum^2 - distance^2) / (sum + distance), the excess from
+  /// double.
+  GRANRAD_INLINE V overlap(V sum, V distance, V excess) { return excess / (sum + distance); }
+  template <class Rows>
+  GRANRAD_INLINE const float* motion(const Rows& rows) {
+    return rows.motion;
+  }
+  GRANRAD_INLINE void pair_velocities(const float* rows, const std::int32_t* i, const std::int32_t* j, V u[3],
+                                      V w[3]) {
+    const float *a = rows + 8 * std::int64_t(*i), *b = rows + 8 * std::int64_t(*j);
+    for (int k = 0; k < 3; ++k) u[k] = a[k] - b[k], w[k] = a[k + 4] + b[k + 4];
+  }
+  GRANRAD_INLINE void pair_velocities_apart(const float* rows, const std::int32_t* i, const std::int32_t* j,
+                                            V u[3], V wi[3], V wj[3]) {
+    const float *a = rows + 8 * std::int64_t(*i), *b = rows + 8 * std::int64_t(*j);
+    for (int k = 0; k < 3; ++k) u[k] = a[k] - b[k], wi[k] = a[k + 4], wj[k] = b[k + 4];
+  }
+};
+
+}  // namespace granrad::native
