@@ -64,7 +64,7 @@ ContactLists::Room ContactLists::room_of(const Rows& rows, std::int64_t i, const
     return norm(p - Vec3{from[3 * i], from[3 * i + 1], from[3 * i + 2]} - beside);
   };
   return {skins_.half_m[i] - way(near_origin_, moved),
-          walls_stale_ ? 1e300 : skins_.half_m[i] - way(wall_origin_, {})};
+          walls_stale_ || !has_walls_ ? 1e300 : skins_.half_m[i] - way(wall_origin_, {})};
 }
 
 ContactLists::Room ContactLists::measure(const Rows& rows, std::int64_t steps) const {
@@ -116,7 +116,16 @@ void ContactLists::anticipate(Rows& rows, Model& model, const Periods& periods, 
     share.cross.find_closing_speeds(kernels_, rows.view(), model.constants, true, closing_);
     share.walls.find_closing_speeds(surface, rows, periods, model.constants.life_s, closing_);
   }
-  set_reaches(rows, steps);
+  const auto meets = [](double speed) { return speed > 0; };
+  if (std::any_of(closing_.begin(), closing_.end(), meets)) set_reaches(rows, steps);
+}
+
+std::int64_t ContactLists::wanted_life(const Rows& rows) const {
+  std::int64_t contacts = 0;
+  for (const auto& s : shares_)
+    contacts += s.own.tight_count() + s.cross.tight_count() + s.walls.contact_count();
+  const bool dilute = refreshes > 1 && 8 * contacts < rows.count;
+  return dilute ? 3 * schedule_.refresh_every : schedule_.refresh_every;
 }
 
 void ContactLists::sort_rows(Rows& rows, const Periods& periods, const Bed& bed, double cell_m) {
@@ -178,7 +187,8 @@ std::int64_t ContactLists::prepare(Rows& rows, Model& model, const Periods& peri
   if (life_ > 0) return life_;
   ++refreshes;
   step_s_ = model.constants.step_s;
-  std::int64_t steps = schedule_.refresh_every;
+  std::int64_t steps = wanted_life(rows);
+  has_walls_ = surface.facet_count() > 0;
   spare_speed_m_s_ =
       std::max(spare_speed_m_s_, smallest_margin * model.largest_radius / (step_s_ * double(steps)));
   check_speeds(rows, bed);

@@ -11,7 +11,7 @@ namespace granrad::native {
 
 /// How often lists are made anew; results do not depend on it.
 struct ListSchedule {
-  int refresh_every = 16;  ///< steps a tight list is made to live
+  int refresh_every = 16;  ///< steps a tight list is made to live; three times that where few meet
   int rebuild_every =
       0;  ///< 0: near lists when someone has moved through the skin; else also every so many steps
 };
@@ -51,6 +51,8 @@ class ContactLists {
   struct Room {
     double near_m, walls_m;
   };
+  /// Steps the next tight lists should live.
+  std::int64_t wanted_life(const Rows& rows) const;
   double margin_of(double speed, std::int64_t steps) const;
   void anticipate(Rows& rows, Model& model, const Periods& periods, const WallSurface& surface,
                   std::int64_t steps);
@@ -77,6 +79,7 @@ class ContactLists {
   double step_s_ = 0, spare_speed_m_s_ = 0;
   double asked_gap_m_ = -1, listed_gap_m_ = 0, listed_wall_gap_m_ = 0;  ///< gaps that outlive the skin
   std::int64_t life_ = 0, promised_ = 0, steps_since_sort_ = 0;
+  bool has_walls_ = true;
   bool stale_ = true, walls_stale_ = true;
 };
 

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "coupling/heat_step.h"
 #include "dem/native/native_engine.h"
 #include "dem/scene/random.h"
 #include "tests/bench/dem_bench_peers.h"
@@ -26,6 +27,7 @@ Material alumina() {
   Material m;
   m.density_kg_m3 = 3984, m.youngs_modulus_Pa = 5e6, m.poisson_ratio = 0.23, m.restitution = 0.45,
   m.friction = 0.4;
+  m.conductivity_W_mK = 33, m.specific_heat_J_kgK = 755, m.real_youngs_modulus_Pa = 3.7e11;
   return m;
 }
 
@@ -110,13 +112,28 @@ struct Speed {
   double ns_per_contact = 0, bytes_per_particle = 0;
 };
 
+/// How to run: what may differ beside the bed. `conducts`: contacts and gas lenses exchange heat after each
+/// piece, as in a coupled run.
+struct Way {
+  int threads = 1;
+  Precision precision = Precision::full;
+  bool conducts = false;
+  const native::Kernels* kernels = nullptr;
+};
+
+void conduct(Bed& bed, native::NativeEngine& engine) {
+  const ConductionSettings settings{.gas = GasLens{}};
+  const auto pairs = engine.near_pairs(bed, lens_cutoff_gap_m(settings, radius));
+  advance_temperatures(bed, conductances(bed, pairs, settings), piece * step);
+}
+
 /// Best of several pieces of the run, load and store of the Bed included.
-Speed measure(Bed bed, const Vec3& gravity, int threads, int warm_up, int steps,
-              const native::Kernels* kernels = nullptr) {
+Speed measure(Bed bed, const Vec3& gravity, int warm_up, int steps, const Way& way = {}) {
   native::EngineOptions options;
-  options.threads = threads, options.kernels = kernels;
+  options.threads = way.threads, options.kernels = way.kernels, options.precision = way.precision;
   native::NativeEngine engine(bed, gravity, step, options);
   const auto n = double(bed.size());
+  if (way.conducts) conduct(bed, engine);  // the lists learn to what gap they are read
   engine.advance(bed, warm_up * step);
   double best = 1e300;
   constexpr int repeats = 5;
@@ -127,6 +144,7 @@ Speed measure(Bed bed, const Vec3& gravity, int threads, int warm_up, int steps,
     for (const auto before = done; done < until; (void)before) {
       done = std::min<std::int64_t>(until, done + piece);
       engine.advance(bed, double(done) * step);
+      if (way.conducts) conduct(bed, engine);
     }
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     best = std::min(best, took.count() / double(steps / repeats));
@@ -202,7 +220,7 @@ int run(const std::filesystem::path& folder, bool quick) {
   const int scale = quick ? 1 : 4, warm_up = 300;
   const auto compare = [&](const std::string& name, const Bed& bed, const Vec3& gravity, int steps,
                            int peer_steps, Decks decks) {
-    const auto one = measure(bed, gravity, 1, warm_up, steps);
+    const auto one = measure(bed, gravity, warm_up, steps);
     report.note(fmt::format("{}: {} particles, {:.1f} ns per contact, {:.0f} bytes per particle", name,
                             bed.size(), one.ns_per_contact, one.bytes_per_particle));
     const auto peer = [&](const std::string& program, const std::string& deck, auto run_own) {
@@ -214,17 +232,23 @@ int run(const std::filesystem::path& folder, bool quick) {
     peer("liggghts", "in.lig", [&] { return run_liggghts(folder, bed, gravity, warm_up, peer_steps); });
     if (decks != Decks::liggghts)
       peer("lammps", "in.lmp", [&] { return run_lammps(folder, bed, warm_up, peer_steps); });
-    const auto two = measure(bed, gravity, 2, warm_up, steps);
-    report.add({name + "_two_threads", two.million_steps, "Mpsteps/s", "one_thread", one.million_steps});
+    const auto again = [&](const std::string& what, const Way& way, const std::string& against) {
+      report.add({name + "_" + what, measure(bed, gravity, warm_up, steps, way).million_steps, "Mpsteps/s",
+                  against, one.million_steps});
+    };
+    again("two_threads", {.threads = 2}, "one_thread");
+    again("mixed", {.precision = Precision::mixed}, "double");
+    again("conducting", {.conducts = true}, "flow_alone");
     return one.million_steps;
   };
   const Bed bed = settled_bed(1, 1);
   const double best = compare("bed_12k", bed, down, 1000 * scale, 500 * scale, Decks::stored);
   report.add({"bed_12k_baseline", best, "Mpsteps/s", "baseline",
-              measure(bed, down, 1, warm_up, 500, &native::baseline_kernels()).million_steps});
+              measure(bed, down, warm_up, 500, {.kernels = &native::baseline_kernels()}).million_steps});
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("avx2")) {
-    const double avx2 = measure(bed, down, 1, warm_up, 500 * scale, &native::avx2_kernels()).million_steps;
+    const double avx2 =
+        measure(bed, down, warm_up, 500 * scale, {.kernels = &native::avx2_kernels()}).million_steps;
     report.side_by_side("bed_12k_avx2", avx2, "liggghts",
                         run_stored("liggghts", data_folder / "in.lig", folder, bed, 500 * scale));
   }
@@ -233,8 +257,11 @@ int run(const std::filesystem::path& folder, bool quick) {
   compare("plug_phi007", dilute_plug(), {}, 1000 * scale, 1000 * scale, Decks::liggghts);
   compare("bed_100k", settled_bed(4, 2), down, 200 * scale, 50 * scale, Decks::both);
   if (!quick) {
-    const auto million = measure(settled_bed(10, 8), down, 1, 100, 200);
-    report.add({"bed_1M_goal", million.million_steps, "Mpsteps/s", "goal", 25});
+    const Bed million = settled_bed(10, 8);
+    for (const auto& [name, way] :
+         {std::pair{"bed_1M", Way{}}, std::pair{"bed_1M_mixed", Way{.precision = Precision::mixed}},
+          std::pair{"bed_1M_two_threads", Way{.threads = 2}}})
+      report.add({name, measure(million, down, 100, 200, way).million_steps, "Mpsteps/s", "goal", 25});
   }
   report.save();
   return 0;
