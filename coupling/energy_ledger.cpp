@@ -51,7 +51,8 @@ double EnergyLedger::relative_defect(const Bed& bed, double feed_in_J, double fe
   const double defect = std::abs(stored_J(bed, feed_in_J, feed_out_J) - received - missed_.value());
   if (defect == 0) return 0;
   const double energy = std::max(thermal_energy_J(bed), energy_at_start_J_);
-  return defect / (std::abs(received) > 1e-12 * energy ? std::abs(received) : energy);
+  const double scale = std::abs(received) > 1e-12 * energy ? std::abs(received) : energy;
+  return scale > 0 ? defect / scale : 0;
 }
 
 namespace {

@@ -73,8 +73,8 @@ std::string vtp_text(const Bed& bed) {
   vtp_scalars(text, "radius", bed.radius_m);
   vtp_scalars(text, "temperature", bed.temperature_K);
   vtp_scalars(text, "q_rad", bed.radiative_heat_W);
-  vtp_vectors(text, "velocity", bed.velocity_m_s);
-  vtp_vectors(text, "angular_velocity", bed.angular_velocity_rad_s);
+  vtp_vectors(text, "v", bed.velocity_m_s);
+  vtp_vectors(text, "omega", bed.angular_velocity_rad_s);
   fmt::format_to(out, "</PointData>\n</Piece>\n</PolyData>\n</VTKFile>\n");
   return fmt::to_string(text);
 }

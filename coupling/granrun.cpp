@@ -35,8 +35,8 @@ double seconds_of(const std::string& walltime) {
 void add_common(CLI::App* command, Arguments& a) {
   command->add_option("--threads", a.options.threads, "threads; results do not depend on it")
       ->check(CLI::Range(1, 4096));
-  command->add_flag("-q,--quiet", a.quiet, "errors only");
-  command->add_flag("-v,--verbose", a.verbose, "more on stderr");
+  auto* quiet = command->add_flag("-q,--quiet", a.quiet, "errors only");
+  command->add_flag("-v,--verbose", a.verbose, "more on stderr")->excludes(quiet);
 }
 
 void add_scene(CLI::App* command, Arguments& a) {

@@ -65,7 +65,10 @@ double Results::mean(const std::string& name) const {
 Results summarise(const History& history) {
   Results results;
   const auto& time = history.at("time_s");
-  if (time.empty()) return results;
+  if (time.empty()) {
+    for (const auto& [name, values] : history) results.column[name] = average(values);
+    return results;
+  }
   const double middle = time.back() / 2;
   const auto first = std::lower_bound(time.begin(), time.end(), middle * (1 + 1e-9)) - time.begin();
   const auto begin = std::min<std::size_t>(first, time.size() - 1);

@@ -4,6 +4,7 @@
 
 #include "dem/packing.h"
 #include "dem/scene/toml_reader.h"
+#include "raytrace/view_factor_file.h"
 
 namespace granrad {
 
@@ -22,8 +23,8 @@ std::string snapshot_dependencies(const GenerateSettings& s) {
 }
 
 std::string trace_dependencies(const GenerateSettings& s) {
-  return fmt::format("{} trace 1 {} {} {}", snapshot_dependencies(s), to_string(s.trace.method), s.trace.rays,
-                     s.trace.seed);
+  return fmt::format("{} trace {} {} {} {}", snapshot_dependencies(s), view_factor_version,
+                     to_string(s.trace.method), s.trace.rays, s.trace.seed);
 }
 
 std::string name_of(double solid_fraction, int number, const std::string& dependencies) {

@@ -32,7 +32,10 @@ std::optional<Vec3> parse_vec3(const std::string& text) {
   return v;
 }
 
+/// Walls end the periods a dump may have: centres stay in their image inside the old box.
 void add_box(Bed& bed, const Box& box) {
+  for (Vec3& centre : bed.position_m) centre = wrapped_into_box(bed, centre);
+  bed.periodic = {};
   for (auto& wall : box_walls(box)) {
     wall.contact = false;  // moved outwards where a sphere pokes through
     wall.role = WallRole::isothermal;

@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <functional>
 #include <optional>
 
@@ -18,6 +19,29 @@ struct TraceText {
   std::string method = "embree", sampling = "sobol", box;
 };
 
+/// A number in [low, high]; unlike CLI::Range it refuses NaN and what follows a number.
+CLI::Validator number_in(double low, double high) {
+  const auto problem = [low, high](std::string& text) -> std::string {
+    double value = 0;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool whole = failure == std::errc{} && end == text.data() + text.size();
+    if (whole && value >= low && value <= high) return {};
+    return fmt::format("{} (must be a number in [{:g}, {:g}])", text, low, high);
+  };
+  return {problem, fmt::format("in [{:g}, {:g}]", low, high)};
+}
+
+/// CLI11 would let -1 wrap around.
+CLI::Validator seed_number() {
+  const auto problem = [](std::string& text) -> std::string {
+    std::int64_t value = 0;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (failure == std::errc{} && end == text.data() + text.size() && value >= 0) return {};
+    return fmt::format("{} (must be a whole number >= 0)", text);
+  };
+  return {problem, ">= 0"};
+}
+
 void add_trace(CLI::App& app, Body& body) {
   const auto command = std::make_shared<TraceCommand>();
   const auto text = std::make_shared<TraceText>();
@@ -31,13 +55,13 @@ void add_trace(CLI::App& app, Body& body) {
       ->check(CLI::IsMember({"embree", "lines"}))
       ->capture_default_str();
   auto* rays = sub.add_option("--rays", command->trace.rays, "rays per particle, walls in proportion to area")
-                   ->check(CLI::Range(1.0, 1e9))
+                   ->check(number_in(1, 1e9))
                    ->capture_default_str();
   sub.add_option(
          "--error", command->trace.error,
          "instead: rms error wanted, relative: of the particle-wall sums, or of the particle fluxes of "
          "--hot-walls")
-      ->check(CLI::Range(1e-6, 1.0))
+      ->check(number_in(1e-6, 1))
       ->excludes(rays);
   sub.add_option("--hot-walls", command->trace.hot_walls,
                  "names of walls: the stated error is that of the fluxes they alone send to the particles")
@@ -51,16 +75,18 @@ void add_trace(CLI::App& app, Body& body) {
       ->transform(CLI::AsSizeValue(true));
   sub.add_option("--emissivity", command->trace.emissivity,
                  "of the particles: total exchange areas of grey surfaces")
-      ->check(CLI::Range(1e-6, 1.0));
+      ->check(number_in(1e-6, 1));
   sub.add_option("--wall-emissivity", command->trace.wall_emissivity,
                  "of the walls; default: each wall's own")
-      ->check(CLI::Range(1e-6, 1.0));
+      ->check(number_in(1e-6, 1));
   sub.add_option("--box", text->box,
                  "six black walls: X,Y,Z in metres, corner at the origin or at :x0,y0,z0");
   sub.add_option("--radius", command->enclosure.radius_m, "radius in metres, for files without one")
-      ->check(CLI::PositiveNumber);
-  sub.add_option("--walls", command->enclosure.stl, "STL file of walls, metres")->check(CLI::ExistingFile);
-  sub.add_option("--seed", command->trace.seed, "of the random numbers")->capture_default_str();
+      ->check(number_in(1e-12, 1e6));
+  sub.add_option("--walls", command->enclosure.stl, "STL file of walls, metres");
+  sub.add_option("--seed", command->trace.seed, "of the random numbers")
+      ->check(seed_number())
+      ->capture_default_str();
   sub.add_option("--threads", command->trace.threads, "0: all; results do not depend on it")
       ->check(CLI::Range(0, 4096));
   sub.callback([&body, command, text] {
@@ -86,7 +112,7 @@ void add_fit(CLI::App& app, Body& body) {
       ->capture_default_str();
   sub.add_option("--report", command->report, "HTML page of the fit");
   sub.add_option("--cutoff", command->options.pp_cutoff, "largest d* of a pair")
-      ->check(CLI::Range(1.5, largest_pp_cutoff))
+      ->check(number_in(1.5, largest_pp_cutoff))
       ->capture_default_str();
   sub.add_option("--pairs", *pairs, "all: invisible pairs count as F = 0; visible: they are left out")
       ->check(CLI::IsMember({"all", "visible"}))

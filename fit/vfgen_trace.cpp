@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "dem/scene/error.h"
+#include "dem/scene/hdf5_file.h"
 #include "dem/scene/program.h"
 #include "fit/vfgen_commands.h"
 
@@ -23,6 +24,19 @@ void require_surfaces(const Enclosure& enclosure, const std::filesystem::path& s
   if (enclosure.sphere_count() == 0 && enclosure.walls.empty())
     throw InputError(fmt::format("{}: no surface to trace (neither particles nor walls) add walls with --box",
                                  snapshot.string()));
+}
+
+/// What would end a command after hours of tracing, found before: throws IoError.
+void require_files(const TraceCommand& command) {
+  std::string missing;
+  for (const auto& snapshot : command.snapshots)
+    if (!std::filesystem::exists(snapshot))
+      missing += fmt::format("{}{}: there is no such file", missing.empty() ? "" : "\n", snapshot.string());
+  if (!missing.empty()) throw IoError(missing);
+  std::error_code failure;  // the writer says what cannot be made
+  if (command.output.has_parent_path())
+    std::filesystem::create_directories(command.output.parent_path(), failure);
+  const Hdf5Writer writable(command.output);
 }
 
 /// Shows how far a trace is, each round from the start, and stops it at a signal.
@@ -58,6 +72,7 @@ int run_trace(const TraceCommand& command, Verbosity verbosity) {
   if (command.output.extension() != ".h5")
     throw InputError(
         fmt::format("--output: {} (view factors are HDF5) name it FILE.h5", command.output.string()));
+  require_files(command);
   std::string failures;
   for (std::size_t k = 0; k < command.snapshots.size() && !interrupt_signal(); ++k) {
     const auto& snapshot = command.snapshots[k];

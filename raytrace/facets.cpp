@@ -105,8 +105,9 @@ double Facets::front_crossing(std::int32_t facet, const Vec3& origin, const Vec3
 double Facets::back_crossing(std::int32_t facet, const Vec3& origin, const Vec3& direction) const {
   const double approach = dot(normal_[facet], direction);
   if (!(approach > 0)) return infinity;
-  const double t = -height(facet, origin) / approach;
-  if (t <= tolerance_) return infinity;
+  const double h = height(facet, origin);
+  if (h >= -tolerance_) return infinity;  // on it: a ray that leaves it at a grazing angle is not behind it
+  const double t = -h / approach;
   return edge_margin(facet, origin + t * direction) >= tolerance_ ? t : infinity;
 }
 

@@ -32,8 +32,8 @@ int more_directions(int directions, double error, double target) {
   const double factor = std::clamp(1.1 * (error / target) * (error / target), 1.3, 4.0);
   const double wanted = std::ceil(directions * factor);
   if (wanted > 16777216)
-    throw NumericalError(fmt::format("lines: error {:.3g} after {} directions, {} asked for: out of reach",
-                                     error, directions, target));
+    throw ThresholdMissed(fmt::format("lines: error {:.3g} after {} directions, {} asked for: out of reach",
+                                      error, directions, target));
   return static_cast<int>(wanted);
 }
 

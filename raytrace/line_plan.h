@@ -10,7 +10,7 @@ void check_line_options(const LineOptions& options);
 int line_threads(int asked);
 
 /// Directions for the next attempt when `error` was found and `target` is wanted: enough if the error fell as
-/// slowly as that of random directions, at most four times as many. Throws NumericalError past 2^24.
+/// slowly as that of random directions, at most four times as many. Throws ThresholdMissed past 2^24.
 int more_directions(int directions, double error, double target);
 
 }  // namespace granrad

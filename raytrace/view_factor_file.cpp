@@ -14,7 +14,6 @@ namespace granrad {
 namespace {
 
 constexpr const char* format_name = "granrad.view_factors";
-constexpr std::int64_t format_version = 1;
 constexpr const char* periodic_name[3] = {"periodic_x", "periodic_y", "periodic_z"};
 /// In the order of pair_kind.
 constexpr std::array<const char*, 4> pair_kind_names = {"particle_particle", "particle_wall", "wall_particle",
@@ -126,7 +125,7 @@ void write_snapshot(Hdf5Writer& out, const ViewFactorFile& content) {
 
 void write_origin(Hdf5Writer& out, const ViewFactorFile& content) {
   out.attribute("/", "format", std::string(format_name));
-  out.attribute("/", "version", std::vector<std::int64_t>{format_version});
+  out.attribute("/", "version", std::vector<std::int64_t>{view_factor_version});
   out.attribute("/", "method", content.method);
   out.attribute("/", "seed", std::vector<std::int64_t>{static_cast<std::int64_t>(content.seed)});
   out.attribute("/", "closure",
@@ -145,7 +144,6 @@ void write_spent(Hdf5Writer& out, const ViewFactorFile& content) {
   out.attribute("/spent", "sampling", content.sampling);
   out.attribute("/spent", "rays", std::vector<std::int64_t>{content.spent.rays});
   out.attribute("/spent", "rounds", std::vector<std::int64_t>{content.spent.rounds});
-  out.attribute("/spent", "seconds", content.spent.seconds);
   out.attribute("/spent", "stated",
                 std::string(content.hot_walls.empty() ? "particle_wall_sums" : "particle_fluxes"));
   out.attribute("/spent", "hot_walls", content.hot_walls);
@@ -157,7 +155,6 @@ void read_spent(const Hdf5Reader& in, ViewFactorFile& content) {
   content.sampling = in.text_attribute("/spent", "sampling");
   content.spent.rays = in.integer_attribute("/spent", "rays");
   content.spent.rounds = static_cast<int>(in.integer_attribute("/spent", "rounds"));
-  content.spent.seconds = in.real_attribute("/spent", "seconds");
   content.spent.error = in.real_attribute("/spent", "error");
   content.error_target = in.real_attribute("/spent", "error_target");
   content.hot_walls = in.text_attribute("/spent", "hot_walls");
@@ -259,9 +256,10 @@ ViewFactorFile read_view_factors(const std::filesystem::path& file) {
   if (!in.has_attribute("/", "format") || in.text_attribute("/", "format") != format_name)
     throw InputError(fmt::format("{}: not a view-factor file (no format = \"{}\") make one with vfgen trace",
                                  file.string(), format_name));
-  if (const auto version = in.integer_attribute("/", "version"); version > format_version)
-    throw InputError(fmt::format("{}: version = {} (this program reads up to {}) use a newer program",
-                                 file.string(), version, format_version));
+  if (const auto version = in.integer_attribute("/", "version"); version != view_factor_version)
+    throw InputError(fmt::format(
+        "{}: version = {} (this program reads {}) {}", file.string(), version, view_factor_version,
+        version > view_factor_version ? "use a newer program" : "trace the snapshot again"));
   ViewFactorFile content;
   content.enclosure = read_enclosure(in);
   content.emissivity = in.read<double>("/surfaces/emissivity");

@@ -9,9 +9,12 @@
 
 namespace granrad {
 
+/// Other versions are refused.
+inline constexpr std::int64_t view_factor_version = 2;
+
 /// A traced and closed enclosure as it is kept on file.
 ///
-/// HDF5, version 1; N surfaces = spheres, walls, surroundings; SI units:
+/// HDF5, version 2; N surfaces = spheres, walls, surroundings; SI units:
 ///   /surfaces/kind [N] int32 (0 particle, 1 wall, 2 open), /area [N] m^2, /name [N] text, /emissivity [N];
 ///   /view_factors/row_begin [N+1] int64, /column [nnz] int32, /value [nnz] closed F_ij (grey: absorbed
 ///   fraction D_ij),
@@ -22,7 +25,7 @@ namespace granrad {
 ///     /variance_factor/particle_particle, particle_wall, wall_particle, wall_wall [b] where sampling is not
 ///     plain (see HitCounts); attributes leaked, thinning_unit, sum_variance_factor, mean_chord_m,
 ///     mean_chord_error_m;
-///   /spent: attributes sampling (sobol, random, lines), rays, rounds, seconds (TraceReport); stated
+///   /spent: attributes sampling (sobol, random, lines), rays, rounds (TraceReport); stated
 ///     (particle_wall_sums or particle_fluxes, of the walls named in hot_walls, see stated_error.h), error
 ///     reached, error_target (0: rays were asked for);
 ///   /snapshot: what distances are computed from: /centre [n,3] m, /radius [n] m, /particle [n] int32 (place
@@ -51,7 +54,7 @@ struct ViewFactorFile {
 /// Writes to a temporary name, fsyncs, renames. Throws IoError.
 void write_view_factors(const std::filesystem::path& file, const ViewFactorFile& content);
 
-/// Throws IoError (cannot be read), InputError (not such a file, or a newer version).
+/// Throws IoError (cannot be read), InputError (not such a file, or of another version).
 ViewFactorFile read_view_factors(const std::filesystem::path& file);
 
 }  // namespace granrad

@@ -44,7 +44,7 @@ struct SelfCheck {
   std::string failed;
 };
 
-/// View factors of an enclosure by Embree: hit counts of every surface. Throws NumericalError when
+/// View factors of an enclosure by Embree: hit counts of every surface. Throws ThresholdMissed when
 /// target_error is out of reach, TraceStopped.
 HitCounts trace_view_factors(const Enclosure& enclosure, const TraceOptions& options,
                              TraceReport* report = nullptr);

@@ -16,8 +16,8 @@ inline const std::map<std::string, std::string>& particle_links() {
   static const std::map<std::string, std::string> links{
       {"id", "/VTKHDF/PointData/id"},
       {"position_m", "/VTKHDF/Points"},
-      {"velocity_m_s", "/VTKHDF/PointData/velocity"},
-      {"angular_velocity_rad_s", "/VTKHDF/PointData/angular_velocity"},
+      {"velocity_m_s", "/VTKHDF/PointData/v"},
+      {"angular_velocity_rad_s", "/VTKHDF/PointData/omega"},
       {"radius_m", "/VTKHDF/PointData/radius"},
       {"temperature_K", "/VTKHDF/PointData/temperature"},
       {"radiative_heat_W", "/VTKHDF/PointData/q_rad"},

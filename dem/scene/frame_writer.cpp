@@ -43,7 +43,7 @@ void write_vtk(Hdf5Writer& out, const Bed& bed, const std::map<std::string, std:
   std::iota(index.begin(), index.end(), 0);
   out.group("/VTKHDF");
   out.attribute("/VTKHDF", "Version", std::vector<std::int64_t>{1, 0});
-  out.attribute("/VTKHDF", "Type", "UnstructuredGrid");
+  out.fixed_text_attribute("/VTKHDF", "Type", "UnstructuredGrid");
   for (const char* count : {"NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"})
     out.write(fmt::format("/VTKHDF/{}", count), std::vector<std::int64_t>{n});
   out.write("/VTKHDF/Connectivity", index.data(), bed.size());
@@ -53,8 +53,8 @@ void write_vtk(Hdf5Writer& out, const Bed& bed, const std::map<std::string, std:
   out.write("/VTKHDF/PointData/id", bed.id);
   out.write("/VTKHDF/PointData/radius", bed.radius_m);
   out.write("/VTKHDF/PointData/temperature", bed.temperature_K);
-  write_vectors(out, "/VTKHDF/PointData/velocity", bed.velocity_m_s);
-  write_vectors(out, "/VTKHDF/PointData/angular_velocity", bed.angular_velocity_rad_s);
+  write_vectors(out, "/VTKHDF/PointData/v", bed.velocity_m_s);
+  write_vectors(out, "/VTKHDF/PointData/omega", bed.angular_velocity_rad_s);
   out.write("/VTKHDF/PointData/q_rad", bed.radiative_heat_W);
   out.write("/VTKHDF/PointData/material", bed.material);
   for (const auto& [name, column] : extra) out.write("/VTKHDF/PointData/" + name, column);

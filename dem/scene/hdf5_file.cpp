@@ -179,6 +179,13 @@ void Hdf5Writer::link(const std::string& existing, const std::string& name) {
 }
 
 void Hdf5Writer::attribute(const std::string& object, const std::string& name, const std::string& text) {
+  const Handle type = text_type(), space(H5Screate(H5S_SCALAR), H5Sclose);
+  const char* value = text.c_str();
+  impl_->attribute(object, name, type, space, &value);
+}
+
+void Hdf5Writer::fixed_text_attribute(const std::string& object, const std::string& name,
+                                      const std::string& text) {
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
   H5Tset_size(type, std::max<std::size_t>(text.size(), 1));
   H5Tset_strpad(type, H5T_STR_NULLPAD);
@@ -320,8 +327,15 @@ std::vector<std::string> Hdf5Reader::read_texts(const std::string& name) const {
 
 std::string Hdf5Reader::text_attribute(const std::string& object, const std::string& name) const {
   const Handle found = impl_->attribute(object, name), type(H5Aget_type(found), H5Tclose);
-  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0)
-    impl_->unexpected(fmt::format("attribute {} of {} must be a text of fixed length", name, object));
+  if (H5Tget_class(type) != H5T_STRING)
+    impl_->unexpected(fmt::format("attribute {} of {} must be a text", name, object));
+  if (H5Tis_variable_str(type) > 0) {
+    char* value = nullptr;
+    if (H5Aread(found, text_type(), &value) < 0) impl_->damaged(name);
+    const std::string copy(value ? value : "");
+    H5free_memory(value);
+    return copy;
+  }
   std::string text(H5Tget_size(type), '\0');
   if (H5Aread(found, type, text.data()) < 0) impl_->damaged(name);
   text.resize(text.find_last_not_of('\0') + 1);

@@ -30,7 +30,10 @@ class Hdf5Writer {
   /// A second name for the same data (hard link).
   void link(const std::string& existing, const std::string& name);
 
+  /// Text of variable length in UTF-8: a str in h5py.
   void attribute(const std::string& object, const std::string& name, const std::string& text);
+  /// Text of fixed length in ASCII, the only kind VTK reads.
+  void fixed_text_attribute(const std::string& object, const std::string& name, const std::string& text);
   void attribute(const std::string& object, const std::string& name, const std::vector<std::int64_t>& values);
   void attribute(const std::string& object, const std::string& name, double value);
 

@@ -8,6 +8,16 @@
 
 namespace granrad {
 
+namespace {
+
+/// R and ParaView put names in quotes.
+std::string unquoted(std::string_view name) {
+  const bool quoted = name.size() >= 2 && name.front() == '"' && name.back() == '"';
+  return std::string(quoted ? name.substr(1, name.size() - 2) : name);
+}
+
+}  // namespace
+
 Snapshot import_csv(const std::filesystem::path& file, double radius_m) {
   TextLines lines(file);
   std::string_view line;
@@ -20,7 +30,13 @@ Snapshot import_csv(const std::filesystem::path& file, double radius_m) {
     throw InputError(fmt::format("{}: is empty; its first line must be x,y,z,radius", file.string()));
   std::vector<std::string_view> fields;
   split_at(',', line, fields);
-  ParticleTable table(file.string(), lines.line_number(), {fields.begin(), fields.end()}, radius_m);
+  if (const auto other = line.find_first_of("; \t"); fields.size() == 1 && other != line.npos)
+    throw InputError(fmt::format("{}:{}: \"{}\" (columns are separated by commas: x,y,z,radius) replace '{}'",
+                                 file.string(), lines.line_number(), line,
+                                 line[other] == '\t' ? "\\t" : std::string(1, line[other])));
+  std::vector<std::string> names;
+  for (const auto field : fields) names.push_back(unquoted(field));
+  ParticleTable table(file.string(), lines.line_number(), std::move(names), radius_m);
   while (next_row()) {
     split_at(',', line, fields);
     table.add_row(lines.line_number(), fields);

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -35,6 +36,8 @@ class DumpReader {
         time_s_ = number_line("the time");
       else if (line == "NUMBER OF ATOMS")
         atoms_ = static_cast<std::int64_t>(number_line("the number of atoms"));
+      else if (line == "UNITS")
+        read_units();
       else if (line.starts_with("BOX BOUNDS"))
         read_bounds(line.substr(10));
       else if (line.starts_with("ATOMS"))
@@ -63,18 +66,44 @@ class DumpReader {
     return value;
   }
 
+  /// SI, or numbers of the user's own making; others would be wrong by powers of ten.
+  void read_units() {
+    std::string_view line;
+    if (lines_.next(line) && line != "si" && line != "lj")
+      fail(fmt::format("units = \"{}\" (lengths must be in metres) convert the dump to SI", line));
+  }
+
   void read_bounds(std::string_view flags) {
     split_words(flags, words_);
-    if (!words_.empty() && words_[0] == "xy") fail("the box is tilted (only upright boxes are read)");
+    const bool triclinic = words_.size() == 6 && words_[0] == "xy";
+    if (triclinic) words_.erase(words_.begin(), words_.begin() + 3);
     for (int axis = 0; axis < 3; ++axis) periodic_[axis] = words_.size() == 3 && words_[axis] == "pp";
     for (int axis = 0; axis < 3; ++axis) {
       std::string_view line;
       if (!lines_.next(line)) fail("the file ends inside the box bounds");
       split_words(line, words_);
+      if (double tilt = 0; triclinic && words_.size() == 3) {
+        if (!parse(words_[2], tilt) || tilt != 0)
+          fail(fmt::format("\"{}\" (the box is tilted: only upright boxes are read) give x,y,z,radius as CSV",
+                           line));
+        words_.pop_back();
+      }
       if (words_.size() != 2 || !parse(words_[0], box_.min[axis]) || !parse(words_[1], box_.max[axis]) ||
           box_.max[axis] < box_.min[axis])
         fail(fmt::format("\"{}\" (box bounds must be two rising numbers)", line));
     }
+  }
+
+  /// Where x or xu is absent: xs or xsu, a part of the box, becomes x.
+  static bool take_scaled(std::vector<std::string>& columns, const std::string& x) {
+    const auto place = [&](const std::string& name) {
+      return std::find(columns.begin(), columns.end(), name);
+    };
+    if (place(x) != columns.end() || place(x + "u") != columns.end()) return false;
+    const auto wrapped = place(x + "s"), at = wrapped != columns.end() ? wrapped : place(x + "su");
+    if (at == columns.end()) return false;
+    *at = x;
+    return true;
   }
 
   Snapshot read_atoms(std::string_view header) {
@@ -82,12 +111,7 @@ class DumpReader {
     split_words(header, words_);
     std::vector<std::string> columns(words_.begin(), words_.end());
     std::array<bool, 3> scaled{};
-    for (auto& name : columns)
-      for (int axis = 0; axis < 3; ++axis)
-        if (name == fmt::format("{}s", "xyz"[axis])) {
-          scaled[axis] = true;
-          name = std::string(1, "xyz"[axis]);
-        }
+    for (int axis = 0; axis < 3; ++axis) scaled[axis] = take_scaled(columns, std::string(1, "xyz"[axis]));
     ParticleTable table(file_, lines_.line_number(), std::move(columns), radius_m_);
     std::string_view line;
     for (std::int64_t k = 0; k < atoms_; ++k) {

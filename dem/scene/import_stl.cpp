@@ -1,14 +1,17 @@
 #include "dem/scene/import_stl.h"
 
-#include <assimp/scene.h>
 #include <fmt/core.h>
 
-#include <assimp/Importer.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
 #include <fstream>
 #include <map>
 #include <tuple>
 
 #include "dem/scene/error.h"
+#include "dem/scene/text_lines.h"
 
 namespace granrad {
 
@@ -16,22 +19,116 @@ namespace {
 
 /// A triangle whose area is below this part of the squared size of its solid has no usable normal.
 constexpr double no_area = 1e-12;
+constexpr std::size_t binary_head = 84, binary_facet = 50;  // bytes; the head ends with the number of facets
 
-Wall merged(const aiMesh& mesh, double scale) {
+/// As it stands in the file: three corners a triangle.
+struct Solid {
+  std::string name;
+  std::vector<Vec3> corners;
+};
+
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in || !std::filesystem::is_regular_file(file))
+    throw IoError(fmt::format("{}: cannot be read", file.string()));
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+bool is_binary(const std::string& bytes) {
+  if (bytes.size() < binary_head) return false;
+  std::uint32_t count = 0;
+  std::memcpy(&count, bytes.data() + binary_head - sizeof count, sizeof count);
+  return bytes.size() == binary_head + binary_facet * count;
+}
+
+Solid read_binary(const std::string& bytes) {
+  Solid solid;
+  for (std::size_t at = binary_head; at < bytes.size(); at += binary_facet) {
+    float facet[12];  // normal, then corners
+    std::memcpy(facet, bytes.data() + at, sizeof facet);
+    for (int corner = 3; corner < 12; corner += 3)
+      solid.corners.push_back({facet[corner], facet[corner + 1], facet[corner + 2]});
+  }
+  return solid;
+}
+
+class TextReader {
+ public:
+  explicit TextReader(const std::filesystem::path& file) : file_(file.string()), lines_(file) {}
+
+  std::vector<Solid> read() {
+    std::string_view line;
+    while (lines_.next(line)) {
+      split_words(line, words_);
+      if (!words_.empty()) take(lower(words_[0]));
+    }
+    if (open_) fail("the file ends inside a solid (it is cut short)");
+    return std::move(solids_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(fmt::format("{}:{}: {}", file_, lines_.line_number(), what));
+  }
+  static std::string lower(std::string_view word) {
+    std::string text(word);
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return text;
+  }
+
+  void take(const std::string& keyword) {
+    if (keyword == "solid") {
+      solids_.push_back({words_.size() > 1 ? std::string(words_[1]) : "", {}});
+      open_ = true;
+    } else if (!open_) {
+      fail("is not an STL file (a text file starts with \"solid\"; a binary one must be whole)");
+    } else if (keyword == "vertex") {
+      solids_.back().corners.push_back(vertex());
+    } else if (keyword == "endfacet") {
+      if (solids_.back().corners.size() % 3 != 0) fail("a facet must have three vertices");
+    } else if (keyword == "endsolid") {
+      open_ = false;
+    } else if (keyword != "facet" && keyword != "outer" && keyword != "endloop") {
+      fail("is not a line of an STL file");
+    }
+  }
+
+  Vec3 vertex() const {
+    Vec3 v;
+    if (words_.size() != 4) fail("a vertex must be three numbers");
+    for (int axis = 0; axis < 3; ++axis) {
+      std::string_view text = words_[axis + 1];
+      if (text.starts_with('+')) text.remove_prefix(1);
+      const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), v[axis]);
+      if (failure != std::errc{} || end != text.data() + text.size() || !std::isfinite(v[axis]))
+        fail(fmt::format("vertex coordinate = {} (must be a finite number)", words_[axis + 1]));
+    }
+    return v;
+  }
+
+  std::string file_;
+  TextLines lines_;
+  std::vector<std::string_view> words_;
+  std::vector<Solid> solids_;
+  bool open_ = false;
+};
+
+/// Corners that agree in single precision, measured from the first, are one vertex: programs write the same
+/// corner with different last digits.
+Wall merged(const Solid& solid, double scale) {
   Wall wall;
   std::map<std::tuple<float, float, float>, std::int32_t> known;
-  const auto index_of = [&](const aiVector3D& v) {
-    const auto [at, is_new] =
-        known.emplace(std::tuple(v.x, v.y, v.z), static_cast<std::int32_t>(known.size()));
-    if (is_new) wall.vertices.push_back(scale * Vec3{v.x, v.y, v.z});
+  const auto index_of = [&](const Vec3& corner) {
+    const Vec3 from_first = corner - solid.corners[0];
+    const std::tuple key(static_cast<float>(from_first.x), static_cast<float>(from_first.y),
+                         static_cast<float>(from_first.z));
+    const auto [at, is_new] = known.emplace(key, static_cast<std::int32_t>(known.size()));
+    if (is_new) wall.vertices.push_back(scale * corner);
     return at->second;
   };
-  for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-    const aiFace& face = mesh.mFaces[f];
-    if (face.mNumIndices != 3) continue;
-    wall.triangles.push_back({index_of(mesh.mVertices[face.mIndices[0]]),
-                              index_of(mesh.mVertices[face.mIndices[1]]),
-                              index_of(mesh.mVertices[face.mIndices[2]])});
+  for (std::size_t k = 0; k + 2 < solid.corners.size(); k += 3) {
+    const auto a = index_of(solid.corners[k]), b = index_of(solid.corners[k + 1]);
+    wall.triangles.push_back({a, b, index_of(solid.corners[k + 2])});
   }
   return wall;
 }
@@ -56,41 +153,23 @@ void check(const Wall& wall, const std::string& file) {
                     file, bad, wall.triangles.size(), first));
 }
 
-/// Names of the meshes: those of the nodes that hold them.
-std::map<unsigned, std::string> solid_names(const aiNode& node) {
-  std::map<unsigned, std::string> names;
-  for (unsigned m = 0; m < node.mNumMeshes; ++m) names[node.mMeshes[m]] = node.mName.C_Str();
-  for (unsigned c = 0; c < node.mNumChildren; ++c)
-    for (auto& [mesh, name] : solid_names(*node.mChildren[c])) names[mesh] = name;
-  return names;
-}
-
 }  // namespace
 
 std::vector<Wall> import_stl(const std::filesystem::path& file, double scale, const std::string& name) {
-  if (!std::filesystem::is_regular_file(file) || !std::ifstream(file))
-    throw IoError(fmt::format("{}: cannot be read", file.string()));
-  Assimp::Importer importer;
-  const aiScene* scene = file.extension() == ".stl" || file.extension() == ".STL"
-                             ? importer.ReadFile(file.string(), 0)
-                             : nullptr;
-  if (!scene || scene->mNumMeshes == 0)
-    throw InputError(fmt::format("{}: is not an STL file ({})", file.string(),
-                                 scene ? "no triangles" : importer.GetErrorString()));
-  const auto names = solid_names(*scene->mRootNode);
+  const std::string bytes = bytes_of(file);
+  std::vector<Solid> solids = is_binary(bytes) ? std::vector{read_binary(bytes)} : TextReader(file).read();
+  std::erase_if(solids, [](const Solid& solid) { return solid.corners.empty(); });
+  if (solids.empty()) throw InputError(fmt::format("{}: has no triangles", file.string()));
   std::vector<Wall> walls;
-  for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
-    Wall wall = merged(*scene->mMeshes[m], scale);
-    if (wall.triangles.empty()) continue;
+  for (const Solid& solid : solids) {
+    Wall wall = merged(solid, scale);
     check(wall, file.string());
-    const auto solid = names.find(m);
-    const bool named = solid != names.end() && !solid->second.empty();
-    wall.name = scene->mNumMeshes == 1
+    wall.name = solids.size() == 1
                     ? name
-                    : fmt::format("{}.{}", name, named ? solid->second : fmt::format("{}", m + 1));
+                    : fmt::format("{}.{}", name,
+                                  solid.name.empty() ? fmt::format("{}", walls.size() + 1) : solid.name);
     walls.push_back(std::move(wall));
   }
-  if (walls.empty()) throw InputError(fmt::format("{}: has no triangles", file.string()));
   return walls;
 }
 

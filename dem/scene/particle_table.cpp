@@ -56,15 +56,14 @@ ParticleTable::ParticleTable(std::string file, std::size_t header_line, std::vec
 }
 
 int ParticleTable::position_of(const std::vector<const char*>& aliases, std::size_t header_line) {
-  int found = -1;
-  for (const char* alias : aliases)
-    for (std::size_t k = 0; k < names_.size(); ++k) {
-      if (names_[k] != alias) continue;
-      if (found >= 0)
-        throw InputError(fmt::format("{}:{}: column {} is given twice", file_, header_line, names_[k]));
-      found = static_cast<int>(k);
-    }
-  return found;
+  for (const char* alias : aliases) {
+    const auto at = std::find(names_.begin(), names_.end(), alias);
+    if (at == names_.end()) continue;
+    if (std::find(at + 1, names_.end(), alias) != names_.end())
+      throw InputError(fmt::format("{}:{}: column {} is given twice", file_, header_line, alias));
+    return static_cast<int>(at - names_.begin());
+  }
+  return -1;
 }
 
 void ParticleTable::problem(std::size_t line, const std::string& what) {

@@ -68,11 +68,11 @@ void read_particles(TomlTable table, Scene& scene) {
   scene.particle_file = table.file("file", false);
   scene.particle_temperature_K = table.number("temperature_K", temperature, 300);
   const bool from_feed = scene.feed.kind != FeedSettings::Kind::none;
-  if (scene.particle_file.empty())
+  if (scene.particle_file.empty() && !table.has("file"))
     scene.particle_diameter_m = table.number("diameter_m", diameter);
   else if (const auto given = table.optional_number("diameter_m", diameter))
     scene.particle_diameter_m = *given;
-  else
+  else if (!scene.particle_file.empty())
     scene.particle_diameter_m = mean_diameter_m(table, scene.particle_file);
   if (scene.particle_file.empty() && !from_feed && !table.has("file"))
     table.problem("", "there are no particles: give [particles] file or a [feed]");

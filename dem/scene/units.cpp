@@ -45,7 +45,9 @@ std::optional<double> quantity_in(std::string_view text, const char* unit, std::
   ut_trim(name.data(), UT_UTF8);
   name.resize(name.find_last_not_of(std::string("\0 \t", 3)) + 1);
   if (end == copy.c_str()) {
-    why_not = fmt::format("must be a number in {0}, or text with a unit, \"1 {0}\"", unit);
+    why_not = std::string_view(unit) == "1"
+                  ? "must be a number"
+                  : fmt::format("must be a number in {0}, or text with a unit, \"1 {0}\"", unit);
   } else if (name.empty()) {
     why_not = fmt::format("has no unit: write the number without quotes for {}, or add the unit", unit);
   } else {

@@ -144,6 +144,17 @@ TEST(GranrunBadInput, BadParticleFilesAreRefused) {
   }
 }
 
+TEST(GranrunBadInput, AMissingParticleFileIsOneMistake) {
+  Scratch scratch;
+  const auto scene =
+      scratch.write("plug.toml", edited(small_plug, "diameter_m = \"0.8 mm\"", "file = \"none.csv\""))
+          .string();
+  const auto outcome = granrun(scratch, "check " + scene);
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  EXPECT_NE(outcome.err.find("none.csv"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("diameter_m"), std::string::npos) << outcome.err;
+}
+
 TEST(GranrunBadInput, BadTablesAreRefused) {
   Scratch scratch;
   const std::string good = content(fs::path(GRANRAD_SOURCE_DIR) / "data/correlations/li_2024_printed.toml");

@@ -132,6 +132,17 @@ TEST(GranrunRun, GoesOnBeyondItsFirstEnd) {
   expect_same_case(whole, extended);
 }
 
+TEST(GranrunRun, ResumesAtTheEndWithoutItsHistory) {
+  Scratch scratch;
+  const auto scene = scratch.write("plug.toml", small_plug).string();
+  const auto folder = scratch.root / "case";
+  ASSERT_EQ(granrun(scratch, "run " + scene + " -q -o " + folder.string()).code, 0);
+  std::ofstream(folder / "history.csv", std::ios::trunc).close();
+  const auto again = granrun(scratch, "run " + scene + " -o " + folder.string() + " --resume");
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(content(folder / "history.csv").rfind("time_s,", 0), 0u);
+}
+
 TEST(GranrunRun, RefusesFoldersThatAreNotItsOwn) {
   Scratch scratch;
   const auto scene = scratch.write("plug.toml", small_plug).string();

@@ -22,9 +22,10 @@ TEST(GranrunUsage, WrongUsageIsExitCode2) {
   for (const std::string& arguments :
        {std::string(""), std::string("simulate"), std::string("run"), "run " + scene, std::string("run -o x"),
         "run " + scene + " -o x --unknown", "check " + scene + " --threads 0",
-        "check " + scene + " --threads many", "run " + scene + " -o x --walltime 10",
-        "run " + scene + " -o x --walltime 00:61:00", "export " + scratch.root.string() + " --to png",
-        "report " + scratch.root.string(), "export " + scratch.root.string() + " --to vtp"}) {
+        "check " + scene + " --threads many", "check " + scene + " -q -v",
+        "run " + scene + " -o x --walltime 10", "run " + scene + " -o x --walltime 00:61:00",
+        "export " + scratch.root.string() + " --to png", "report " + scratch.root.string(),
+        "export " + scratch.root.string() + " --to vtp"}) {
     const auto outcome = granrun(scratch, arguments);
     EXPECT_EQ(outcome.code, 2) << arguments << "\n" << outcome.err;
     EXPECT_FALSE(outcome.out.empty() && outcome.err.empty()) << arguments;

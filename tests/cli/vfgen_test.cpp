@@ -92,6 +92,11 @@ TEST_F(Vfgen, RefusesBadUsageWithCode2) {
   expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --box 1,2,x"), 2, "X,Y,Z");
   expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --box 1,2,-3"), 2, "positive");
   expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --radius -1"), 2, "--radius");
+  for (const std::string option : {"rays", "error", "emissivity", "wall-emissivity", "radius"})
+    expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --" + option + " nan"), 2,
+                "--" + option + ": nan (must be a number in");
+  expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --radius 4mm"), 2, "4mm (must be a number");
+  expect_says(vfgen("trace " + csv + " -o " + path("x.h5") + " --seed -1"), 2, "-1 (must be a whole number");
   expect_says(vfgen("trace " + csv + " -o " + path("x.txt")), 2, ".h5");
   expect_says(
       vfgen("trace " + csv + " -o " + path("x.h5") + " --box 0.01,0.01,0.01 --method lines --emissivity 0.5"),
@@ -107,6 +112,16 @@ TEST_F(Vfgen, SaysWhichFileIsMissingWithCode3) {
   expect_says(vfgen("check " + path("none.toml")), 3, "none.toml");
   expect_says(vfgen("generate " + path("none.toml") + " -o " + path("out")), 3, "none.toml");
   expect_says(vfgen("trace " + two_spheres() + " -o /proc/none/x.h5"), 3, "/proc/none");
+  // Found before hours of tracing, not after.
+  const auto unwritable = vfgen("trace " + two_spheres() + " --walls none.stl -o /proc/none/x.h5");
+  EXPECT_EQ(unwritable.text.find("none.stl"), std::string::npos) << unwritable.text;
+  const auto second =
+      vfgen("trace " + two_spheres() + " " + path("a.csv") + " " + path("b.csv") + " -o " + path("x.h5"));
+  expect_says(second, 3, "a.csv: there is no such file");
+  expect_says(second, 3, "b.csv");
+  EXPECT_FALSE(fs::exists(path("x_0001.h5")));
+  expect_says(vfgen("trace " + two_spheres() + " --rays 10 -o " + path("made/x.h5")), 0, "made/x.h5");
+  expect_says(vfgen("trace " + two_spheres() + " --walls none.stl -o " + path("x.h5")), 3, "none.stl");
 }
 
 TEST_F(Vfgen, RefusesBadFilesWithCode2) {
@@ -304,6 +319,70 @@ rays = 300
                     " --form transmittance --report " + path("t.html")),
               0, "t.html");
   EXPECT_TRUE(fs::exists(path("t.html")));
+}
+
+// Version 1 held one variance factor for all pairs, as a dataset.
+TEST_F(Vfgen, RefusesViewFactorsOfAnOlderVersion) {
+  {
+    granrad::Hdf5Writer old(path("old.h5"));
+    old.attribute("/", "format", std::string("granrad.view_factors"));
+    old.attribute("/", "version", std::vector<std::int64_t>{1});
+    old.write("/rays/variance_factor", std::vector<double>{1});
+    old.commit();
+  }
+  const auto outcome = vfgen("fit " + path("old.h5") + " -o " + path("t.toml"));
+  expect_says(outcome, 2, "version = 1");
+  expect_says(outcome, 2, "trace the snapshot again");
+  ASSERT_EQ(vfgen("trace " + two_spheres() + " -q -o " + path("new.h5") + " --rays 10").code, 0);
+  EXPECT_EQ(granrad::Hdf5Reader(path("new.h5")).integer_attribute("/", "version"), 2);
+}
+
+// Planted: the time a trace took, written into the file.
+TEST_F(Vfgen, SameBytesForAnyNumberOfThreads) {
+  const auto bytes = [&](const std::string& name) {
+    std::stringstream content;
+    content << std::ifstream(path(name), std::ios::binary).rdbuf();
+    return content.str();
+  };
+  for (const std::string method : {"embree", "lines"}) {
+    for (const std::string threads : {"1", "2"})
+      ASSERT_EQ(vfgen("trace " + two_spheres() + " -q -o " + path("t" + threads + ".h5") +
+                      " --rays 1000 --box 0.01,0.004,0.004 --method " + method + " --threads " + threads)
+                    .code,
+                0);
+    EXPECT_TRUE(bytes("t1.h5") == bytes("t2.h5")) << method;
+  }
+}
+
+// A scalar text of variable length is a str in h5py, one of fixed length is bytes: format == "..." would
+// fail.
+TEST_F(Vfgen, AttributesAreTextsOfVariableLength) {
+  ASSERT_EQ(vfgen("trace " + two_spheres() + " -q -o " + path("a.h5") + " --rays 10").code, 0);
+  const auto dump = run("h5dump -a /format -a /method -a /failed " + path("a.h5"));
+  if (dump.code != 0) GTEST_SKIP() << "no h5dump";
+  EXPECT_EQ(dump.text.find("STRSIZE 2"), std::string::npos) << dump.text;
+  EXPECT_NE(dump.text.find("STRSIZE H5T_VARIABLE"), std::string::npos) << dump.text;
+  EXPECT_EQ(granrad::read_view_factors(path("a.h5")).method, "embree");
+}
+
+// Planted: periods kept; the sphere beyond the box is folded back into it.
+TEST_F(Vfgen, BoxEndsThePeriodsOfADump) {
+  const auto dump =
+      write("pp.dump",
+            "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp ff\n0 0.01\n0 "
+            "0.004\n0 0.004\nITEM: ATOMS id x y z\n1 0.002 0.002 0.002\n2 0.0032 0.002 0.002\n");
+  const auto outcome =
+      vfgen("trace " + dump + " --radius 4e-4 --box 0.003,0.004,0.004 --rays 1000 -o " + path("x.h5"));
+  expect_says(outcome, 0, "1 particles with their centre outside the box were left out");
+  const auto enclosure = granrad::read_view_factors(path("x.h5")).enclosure;
+  EXPECT_EQ(enclosure.sphere_count(), 1u);
+  EXPECT_EQ(enclosure.periodic, (std::array<bool, 3>{}));
+}
+
+TEST_F(Vfgen, AnErrorOutOfReachIsCode4) {
+  expect_says(vfgen("trace " + two_spheres() + " --box 0.0101,0.0104,0.0204 --error 1e-6 -o " + path("x.h5")),
+              4, "ask for less");
+  EXPECT_FALSE(fs::exists(path("x.h5")));
 }
 
 }  // namespace

@@ -384,5 +384,26 @@ TEST(ThinPlate, TwoFacesInOnePlane) {
   EXPECT_EQ(hits(counts, 1, 2) + hits(counts, 2, 1), 0);
 }
 
+// Points drawn on a wall lie behind it by a rounding of their place, 1e-14 m here. Planted: a back met at any
+// distance above the tolerance, so that rays which leave at grazing angles leak (33 of 1.2e6).
+TEST(FarFromTheOrigin, ClosedMeshesDoNotLeak) {
+  const Vec3 far{100, 100, 100};
+  Wall mesh;
+  mesh.name = "mesh";
+  for (const Wall& side : box_walls({far, far + Vec3{0.010, 0.004, 0.006}})) {
+    const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), side.vertices.begin(), side.vertices.end());
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
+  }
+  Enclosure e = spheres_in_open_space({far + Vec3{0.003, 0.002, 0.002}}, {4e-4});
+  e.walls = {mesh};
+  e.wall = {0};
+  TraceOptions o;
+  o.rays_per_particle = 1e4;
+  const HitCounts c = trace_view_factors(e, o);
+  EXPECT_EQ(c.leaked, 0) << "of " << c.launched[0] + c.launched[1];
+}
+
 }  // namespace
 }  // namespace granrad

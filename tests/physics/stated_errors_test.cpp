@@ -3,7 +3,9 @@
 // or exact quadrature.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <map>
+#include <random>
 
 #include "raytrace/exact.h"
 #include "raytrace/stated_error.h"
@@ -31,6 +33,29 @@ const Enclosure& mixed_bed() {
   return bed;
 }
 
+/// Dumbbells of two spheres, radii 1 : 1, 1.7 and 3, that overlap by `overlap` of the smaller radius, placed
+/// in a packing at random angles.
+Enclosure overlapping_bed(double overlap) {
+  constexpr double reach = 1e-3;
+  const Box box{{0, 0, 0}, {0.0075, 0.0075, 0.0075}};
+  const Enclosure cells = packed(box, equal_radii(box, 0.4, reach));
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  std::vector<Vec3> centre;
+  std::vector<double> radius;
+  for (std::size_t k = 0; k < cells.sphere_count(); ++k) {
+    const double ratio = std::array{1.0, 1.7, 3.0}[k % 3];
+    const double small = 2 * reach / (2 + 2 * ratio - overlap), large = ratio * small;
+    Vec3 along{normal(random), normal(random), normal(random)};
+    along = along * (1 / norm(along));
+    centre.push_back(cells.centre_m[k] + along * (reach - small));
+    centre.push_back(cells.centre_m[k] - along * (reach - large));
+    radius.push_back(small);
+    radius.push_back(large);
+  }
+  return boxed(spheres_in_open_space(centre, radius), box);
+}
+
 ExchangeAreas closed(const HitCounts& counts) {
   ClosureReport report;
   return close(one_way_estimate(counts), Closure::reciprocal, report);
@@ -43,6 +68,8 @@ struct Spread {
 
 const char* class_of(const Enclosure& e, std::size_t i, std::size_t j, double f) {
   const std::size_t n = e.sphere_count();
+  if (i < n && j < n && norm(e.centre_m[i] - e.centre_m[j]) < (1 + 1e-9) * (e.radius_m[i] + e.radius_m[j]))
+    return "touching pair";
   if (i >= n && j >= n) return "between walls";
   if (i >= n) return "wall to particle";
   if (j >= n) return f > 0.1 ? "particle to near wall" : "particle to far wall";
@@ -114,6 +141,28 @@ TEST(ClosedErrors, OfLinesAreTheSpreadOrAbove) {
     for (const auto& [name, value] : ratio) {
       EXPECT_GT(value, 0.9) << name;
       EXPECT_LT(value, name == "near pair" || name == "particle to near wall" ? 2 : 1.25) << name;
+    }
+  }
+}
+
+// 40 dumbbells, whose pairs are the only ones with hits at distance zero. Sobol's variance factor is one for
+// all pairs of a count, and the steady hits of touching pairs are better than that: 1.1. Overlaps of 1e-8 to
+// 1e-2 give the same ratios within 0.02. Planted: variances not carried through closure
+// give 1.07 at near walls.
+TEST(ClosedErrors, HoldWhereSpheresOverlap) {
+  const Enclosure bed = overlapping_bed(5e-2);
+  for (const auto sampling : {Sampling::sobol, Sampling::plain}) {
+    const auto ratio = stated_over_found(bed, 100, [&](std::uint64_t seed) {
+      TraceOptions o;
+      o.rays_per_particle = 500;
+      o.sampling = sampling;
+      o.seed = seed;
+      return trace_view_factors(bed, o);
+    });
+    for (const auto& [name, value] : ratio) {
+      const bool upper = name == "touching pair" && sampling == Sampling::sobol;
+      EXPECT_GT(value, 0.94) << name;
+      EXPECT_LT(value, upper ? 1.2 : 1.06) << name;
     }
   }
 }
@@ -205,7 +254,7 @@ TEST(TargetError, SpendsRaysWhereTheErrorIs) {
 TEST(TargetError, OutOfReachIsRefused) {
   TraceOptions o;
   o.target_error = 1e-7;
-  EXPECT_THROW(trace_view_factors(equal_bed(), o), NumericalError);
+  EXPECT_THROW(trace_view_factors(equal_bed(), o), ThresholdMissed);
   o.hot_walls = {3};
   EXPECT_THROW(trace_view_factors(equal_bed(), o), InputError);  // a particle
 }

@@ -18,7 +18,6 @@ namespace fs = std::filesystem;
 
 class Import : public testing::Test {
  protected:
-
   fs::path write(const std::string& text, const std::string& name = "file") const {
     return folder_.write(name, text);
   }
@@ -58,6 +57,7 @@ TEST_F(Import, CsvColumnsComeInAnyOrder) {
   EXPECT_EQ(bed.next_id, 3);
   EXPECT_EQ(read("x,y,z,diameter\n0,0,0,8e-4\n").radius_m[0], 4e-4);
   EXPECT_EQ(read("x,y,z\n0,0,0\n", 4e-4).radius_m[0], 4e-4);
+  EXPECT_EQ(read("\"x\",\"y\",\"z\",\"radius\"\n0,0,0,8e-4\n").radius_m[0], 8e-4);
   EXPECT_EQ(read("x,y,z,radius\n").size(), 0u);
   EXPECT_FALSE(read_snapshot(write("x,y,z,radius\n0,0,0,1\n")).has_temperature);
 }
@@ -65,6 +65,10 @@ TEST_F(Import, CsvColumnsComeInAnyOrder) {
 TEST_F(Import, BadCsvIsRefusedLineByLine) {
   const std::string header = "id,x,y,z,radius,temperature\n";
   EXPECT_EQ(problem_of(""), ": is empty; its first line must be x,y,z,radius");
+  EXPECT_EQ(problem_of("x;y;z;radius\n"),
+            ":1: \"x;y;z;radius\" (columns are separated by commas: x,y,z,radius) replace ';'");
+  EXPECT_EQ(problem_of("x\ty\tz\tradius\n"),
+            ":1: \"x\ty\tz\tradius\" (columns are separated by commas: x,y,z,radius) replace '\\t'");
   EXPECT_EQ(problem_of("x,y,radius\n"), ":1: no column z (columns are x, y, radius)");
   EXPECT_EQ(problem_of("x,y,z\n1,2,3\n"),
             ":1: no column radius (columns are x, y, z) add it, or give the radius of all particles");
@@ -110,6 +114,17 @@ TEST_F(Import, DumpColumnsComeByName) {
   EXPECT_EQ(scaled.position_m[0], (Vec3{1, -0.5, 0.5}));
   EXPECT_EQ(scaled.position_m[1], (Vec3{0, -1, 4}));
   EXPECT_EQ(read(dump_head + "ITEM: ATOMS id xu yu zu\n1 2.5 0 0\n2 0 0 1\n", 0.1).position_m[0].x, 2.5);
+  const Bed unwrapped = read(dump_head + "ITEM: ATOMS id xsu ysu zsu\n1 1.5 0.25 0.125\n2 0 0 1\n", 0.1);
+  EXPECT_EQ(unwrapped.position_m[0], (Vec3{3, -0.5, 0.5}));
+  const Bed both =
+      read(dump_head + "ITEM: ATOMS id xu x xs y ys z zu\n1 9 1 9 0 9 0 9\n2 9 1 9 0 9 1 9\n", 0.1);
+  EXPECT_EQ(both.position_m[1], (Vec3{1, 0, 1})) << "x before xu and xs";
+  const Bed upright = read(
+      "ITEM: UNITS\nsi\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS xy xz yz pp ff pp\n"
+      "0 2 0\n-1 1 0.0\n0 4 0\nITEM: ATOMS id x y z\n1 0 0 0\n",
+      0.1);
+  EXPECT_EQ(upright.periodic, (std::array<bool, 3>{true, false, true})) << "tilted by nothing";
+  EXPECT_EQ(upright.box.max, (Vec3{2, 1, 4}));
   const std::string first = dump_head + "ITEM: ATOMS id x y z\n1 0 0 0\n2 0 0 1\n";
   const Bed last = read(first + "ITEM: TIME\n0.7\n" +
                             "ITEM: TIMESTEP\n800\nITEM: NUMBER OF ATOMS\n1\n"
@@ -135,8 +150,10 @@ TEST_F(Import, BadDumpsAreRefused) {
   EXPECT_EQ(problem_of("ITEM: ATOMS id x y z\n"), ":1: ITEM: ATOMS stands before ITEM: NUMBER OF ATOMS");
   EXPECT_EQ(problem_of("ITEM: NUMBER OF ATOMS\nmany\n"),
             ":2: the number of atoms = \"many\" (must be a number >= 0)");
-  EXPECT_EQ(problem_of("ITEM: BOX BOUNDS xy xz yz pp pp pp\n0 1 0\n"),
-            ":1: the box is tilted (only upright boxes are read)");
+  EXPECT_EQ(problem_of("ITEM: BOX BOUNDS xy xz yz pp pp pp\n0 1 0\n0 1 0.5\n"),
+            ":3: \"0 1 0.5\" (the box is tilted: only upright boxes are read) give x,y,z,radius as CSV");
+  EXPECT_EQ(problem_of("ITEM: UNITS\ncgs\n"),
+            ":2: units = \"cgs\" (lengths must be in metres) convert the dump to SI");
   EXPECT_EQ(problem_of("ITEM: BOX BOUNDS pp pp pp\n2 1\n"),
             ":2: \"2 1\" (box bounds must be two rising numbers)");
 }
@@ -174,6 +191,19 @@ TEST_F(Import, StlKeepsSolidsAndMergesVertices) {
   EXPECT_EQ(two[1].name, "wall.b");
 }
 
+// Single precision moves the corners by up to 4e-6 m here, and particles at the wall lie behind it.
+TEST_F(Import, TextStlKeepsItsDigitsFarFromTheOrigin) {
+  const auto walls = import_stl(
+      write("SOLID a\r\n" + facet("100.0001 100 +100", "100.01 1.00004e2 100", "100 100.01 100") +
+                facet("100.0001 100 100", "100 100.01000000000001 100", "100 100.02 100") + "endsolid a\n",
+            "far.stl"),
+      1, "w");
+  ASSERT_EQ(walls.size(), 1u);
+  EXPECT_EQ(walls[0].vertices.size(), 4u) << "the last digit of a corner aside, it is one";
+  EXPECT_EQ(walls[0].vertices[0], (Vec3{100.0001, 100, 100}));
+  EXPECT_EQ(walls[0].vertices[1], (Vec3{100.01, 100.004, 100}));
+}
+
 TEST_F(Import, BinaryStlIsRead) {
   std::string bytes(80, ' ');
   const std::uint32_t count = 1;
@@ -190,6 +220,23 @@ TEST_F(Import, BadStlIsRefused) {
   EXPECT_THROW(import_stl(folder_ / "none.stl", 1, "w"), IoError);
   EXPECT_THROW(import_stl(write("hello", "text.stl"), 1, "w"), InputError);
   EXPECT_THROW(import_stl(write("", "empty.stl"), 1, "w"), InputError);
+  const auto refused = [&](const std::string& text, const std::string& why) {
+    try {
+      import_stl(write(text, "bad.stl"), 1, "w");
+      ADD_FAILURE() << text;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+    }
+  };
+  const std::string good = facet("0 0 0", "1 0 0", "0 1 0");
+  refused("solid a\n" + facet("0 0 0", "1 0 0", "nan 1 0") + "endsolid a\n", ":6: vertex coordinate = nan");
+  refused("solid a\n" + facet("0 0 0", "1 0 0", "0 1") + "endsolid a\n",
+          ":6: a vertex must be three numbers");
+  refused("solid a\n" + good, "cut short");
+  refused("solid a\nfacet\nvertex 0 0 0\nendfacet\n", ":4: a facet must have three vertices");
+  refused("solid a\n" + good + "sphere\n", ":9: is not a line");
+  refused("x,y,z,radius\n", "is not an STL file");
+  refused("solid a\nendsolid a\n", "has no triangles");
   try {
     import_stl(write("solid a\n" + facet("0 0 0", "1 0 0", "0 1 0") + facet("0 0 0", "1 0 0", "2 0 0") +
                          "endsolid a\n",

@@ -83,7 +83,6 @@ TEST(Layering, ThirdPartyHeadersStayInTheirFile) {
       {"ceres/", {"fit/least_squares.cpp"}},
       {"toml++/", {"dem/scene/toml_reader.cpp"}},
       {"udunits2", {"dem/scene/units.cpp", "dem/scene/toml_reader.cpp"}},
-      {"assimp/", {"dem/scene/import_stl.cpp"}},
       {"hdf5",
        {"dem/scene/hdf5_file", "dem/scene/frame", "dem/scene/snapshot.cpp", "raytrace/view_factor_file.cpp"}},
       {"Random123/", {"dem/scene/random.cpp"}},
