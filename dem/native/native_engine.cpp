@@ -12,6 +12,7 @@
 #include "dem/native/near_from_lists.h"
 #include "dem/native/step_barrier.h"
 #include "dem/scene/error.h"
+#include "dem/step_clock.h"
 
 namespace granrad::native {
 namespace {
@@ -174,33 +175,29 @@ NativeEngine::~NativeEngine() = default;
 
 void NativeEngine::advance(Bed& bed, double until_s) {
   Impl& e = *impl_;
-  const double origin_s = bed.time_s - double(bed.step) * e.step_s;
-  const double start_s =
-      std::abs(origin_s) < 1e-6 * e.step_s ? 0 : origin_s;  // rounding of the division is no offset
-  const auto last = static_cast<std::int64_t>(std::ceil((until_s - start_s) / e.step_s - 1e-6));
+  const StepClock clock(bed, e.step_s);
+  const std::int64_t last = clock.first_at_or_after(until_s);
   if (last <= bed.step) return;
   e.load(bed);
   std::int64_t step = bed.step;
-  const auto time_at = [&](std::int64_t k) { return start_s + double(k) * e.step_s; };
   while (step < last) {
-    const double opens = WallSurface::next_change_s(e.walls, time_at(step));
+    const double opens = next_opening_s(e.walls, clock.time_s(step));
     auto steps = std::min(last - step, e.lists->prepare(e.rows, e.model, *e.periods, bed, *e.surface));
-    if (opens < time_at(step + steps))
-      steps = std::clamp<std::int64_t>(
-          static_cast<std::int64_t>(std::ceil((opens - start_s) / e.step_s)) - step, 1, steps);
+    if (opens < clock.time_s(step + steps))
+      steps = std::clamp<std::int64_t>(clock.first_at_or_after(opens) - step, 1, steps);
     bool limit_broken = false;
     const auto done = e.run(steps, step + steps == last, limit_broken);
     step += done;
     e.lists->spend(done, limit_broken);
     e.check_overlaps(bed);
-    if (time_at(step) >= opens) {
-      e.surface->set_time(e.walls, time_at(step));
+    if (clock.time_s(step) >= opens) {
+      e.surface->set_time(e.walls, clock.time_s(step));
       e.lists->walls_changed();
     }
   }
   e.transfer.store(e.rows, e.lists->collect(e.rows), static_cast<int>(e.lists->shares().size()), bed);
   bed.step = last;
-  bed.time_s = e.left_at_s = time_at(last);
+  bed.time_s = e.left_at_s = clock.time_s(last);
 }
 
 NearPairs NativeEngine::near_pairs(const Bed& bed, double max_gap_m) {

@@ -157,13 +157,6 @@ void WallSurface::set_time(const std::vector<Wall>& walls, double time_s) {
   for (auto& f : facets_) f.stands = walls[f.wall].contact && time_s < walls[f.wall].opens_at_s;
 }
 
-double WallSurface::next_change_s(const std::vector<Wall>& walls, double time_s) {
-  double next = std::numeric_limits<double>::infinity();
-  for (const auto& w : walls)
-    if (w.contact && w.opens_at_s > time_s) next = std::min(next, w.opens_at_s);
-  return next;
-}
-
 WallSurface::Side& WallSurface::side_of(std::int32_t facet, std::int32_t edge) {
   auto& sides = facets_[facet].sides;
   return *std::find_if(sides.begin(), sides.end(), [&](const Side& side) { return side.edge == edge; });

@@ -40,8 +40,6 @@ class WallSurface {
 
   /// Which facets stand: their walls take part in contact and are not yet opened.
   void set_time(const std::vector<Wall>& walls, double time_s);
-  /// The next time after `time_s` at which a shutter opens, or infinity.
-  static double next_change_s(const std::vector<Wall>& walls, double time_s);
 
   std::int32_t facet_count() const { return static_cast<std::int32_t>(facets_.size()); }
   /// Facets are the faces of all walls in their order: none was left out for having no area.

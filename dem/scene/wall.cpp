@@ -1,13 +1,19 @@
 #include "dem/scene/wall.h"
 
+#include <algorithm>
+
 namespace granrad {
 
 const char* to_string(WallRole role) {
   switch (role) {
-    case WallRole::isothermal: return "isothermal";
-    case WallRole::adiabatic: return "adiabatic";
-    case WallRole::open: return "open";
-    case WallRole::excluded: return "excluded";
+    case WallRole::isothermal:
+      return "isothermal";
+    case WallRole::adiabatic:
+      return "adiabatic";
+    case WallRole::open:
+      return "open";
+    case WallRole::excluded:
+      return "excluded";
   }
   return "?";
 }
@@ -31,7 +37,16 @@ double area(const Wall& wall) {
   return sum;
 }
 
-Vec3 polygon_normal(const Wall& wall) { return normalized(twice_vector_area(wall.vertices)); }
+Vec3 polygon_normal(const Wall& wall) {
+  return normalized(twice_vector_area(wall.vertices));
+}
+
+double next_opening_s(const std::vector<Wall>& walls, double time_s) {
+  double next = std::numeric_limits<double>::infinity();
+  for (const auto& w : walls)
+    if (w.contact && w.opens_at_s > time_s) next = std::min(next, w.opens_at_s);
+  return next;
+}
 
 std::array<Wall, 6> box_walls(const Box& box) {
   static const char* const names[6] = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};

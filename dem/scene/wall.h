@@ -41,6 +41,9 @@ double area(const Wall& wall);
 /// Unit normal of a polygon wall (Newell's method). Precondition: is_polygon().
 Vec3 polygon_normal(const Wall& wall);
 
+/// The next time after `time_s` at which a shutter that particles touch opens, or infinity.
+double next_opening_s(const std::vector<Wall>& walls, double time_s);
+
 /// Axis-aligned box.
 struct Box {
   Vec3 min{}, max{};

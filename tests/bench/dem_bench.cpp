@@ -15,6 +15,7 @@
 #include "dem/native/native_engine.h"
 #include "dem/scene/random.h"
 #include "tests/bench/dem_bench_peers.h"
+#include "tests/settled_bed.h"
 
 namespace granrad::bench {
 namespace {
@@ -29,33 +30,6 @@ Material alumina() {
   m.friction = 0.4;
   m.conductivity_W_mK = 33, m.specific_heat_J_kgK = 755, m.real_youngs_modulus_Pa = 3.7e11;
   return m;
-}
-
-Wall floor_at_zero() {
-  Wall w;
-  w.name = "floor";
-  w.vertices = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-  return w;
-}
-
-/// The settled bed, periodic in x and y, repeated nx x ny times.
-Bed settled_bed(int nx, int ny) {
-  std::ifstream in(data_folder / "bed12k.data");
-  std::string line;
-  while (std::getline(in, line) && line.rfind("Atoms", 0) != 0) {
-  }
-  std::vector<Vec3> points;
-  double id, type, diameter, density;
-  for (Vec3 p; in >> id >> type >> diameter >> density >> p.x >> p.y >> p.z;) points.push_back(p);
-  Bed bed;
-  bed.materials = {alumina()};
-  for (int a = 0; a < nx; ++a)
-    for (int b = 0; b < ny; ++b)
-      for (const auto& p : points) bed.add(p + Vec3{0.018 * a, 0.018 * b, 0}, {}, radius, 300);
-  bed.periodic = {true, true, false};
-  bed.box = {{0, 0, -2e-4}, {0.018 * nx, 0.018 * ny, 0.045}};
-  bed.walls = {floor_at_zero()};
-  return bed;
 }
 
 /// 12 500 spheres at solid fraction 0.07 in uniform motion, all directions periodic.
