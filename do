@@ -11,6 +11,9 @@ packages=(build-essential cmake ninja-build git python3
   libcli11-dev libtomlplusplus-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
   libudunits2-dev librandom123-dev libboost-math-dev)
 
+# The engine on LIGGGHTS: optional in a build, part of the tests.
+liggghts_engine=(libliggghts-dev libopenmpi-dev)
+
 say() { printf '\n== %s\n' "$*"; }
 
 usage() {
@@ -58,6 +61,7 @@ set_up() {
 
 case ${1:-} in
   test)
+    packages+=("${liggghts_engine[@]}")
     set_up
     build all
     say "testing"
@@ -65,6 +69,7 @@ case ${1:-} in
     ctest --test-dir "$build" -LE long -j "$(nproc)" --output-on-failure --no-tests=error
     ;;
   test-long)
+    packages+=("${liggghts_engine[@]}")
     set_up
     build all
     say "testing (long)"

@@ -46,12 +46,11 @@ std::string names_of(const Scene& scene, WallRole role) {
 void judge_flow(const Case& c, Verdict& verdict) {
   const Scene& scene = c.flow;
   const bool moves = scene.engine != EngineKind::none;
-  verdict.say(
-      moves,
-      scene.precision == Precision::mixed
-          ? "flow: native DEM engine, Hertz-Mindlin contacts with history, their law in single precision"
-          : "flow: native DEM engine, Hertz-Mindlin contacts with history",
-      "flow: dem.engine = \"none\", the bed is frozen");
+  const char* engine = scene.engine == EngineKind::liggghts ? "LIGGGHTS" : "native DEM engine";
+  verdict.say(moves,
+              fmt::format("flow: {}, Hertz-Mindlin contacts with history{}", engine,
+                          scene.precision == Precision::mixed ? ", their law in single precision" : ""),
+              "flow: dem.engine = \"none\", the bed is frozen");
   if (!moves) return;
   verdict.say(norm(scene.gravity_m_s2) > 0, fmt::format("gravity {:g} m/s2", norm(scene.gravity_m_s2)),
               "gravity: scene.gravity_m_s2 is 0");

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "dem/engine_liggghts.h"
 #include "dem/engine_native.h"
 #include "dem/scene/error.h"
 
@@ -10,8 +11,7 @@ namespace granrad {
 namespace {
 
 std::unique_ptr<Engine> make_engine(const Scene& scene, const Bed& bed, double step_s, int threads) {
-  if (scene.engine == EngineKind::liggghts)
-    throw InputError("dem.engine = \"liggghts\" (this build has no LIGGGHTS engine) try engine = \"native\"");
+  if (scene.engine == EngineKind::liggghts) return make_liggghts_engine(scene.gravity_m_s2, step_s);
   return make_native_engine(bed, scene.gravity_m_s2, step_s, threads, scene.precision);
 }
 

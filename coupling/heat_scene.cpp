@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "dem/engine_liggghts.h"
 #include "dem/scene/error.h"
 #include "fit/correlation.h"
 #include "raytrace/path_tracer.h"
@@ -209,6 +210,8 @@ Case read_case(const std::filesystem::path& file, const std::vector<std::string>
   for (const auto& override_text : overrides) document.override_value(override_text);
   Case result;
   result.flow = read_scene(document);
+  if (result.flow.engine == EngineKind::liggghts)
+    for (const auto& problem : liggghts_problems(result.flow)) document.problem("dem.engine", problem);
   result.heat = read_heat_scene(document, result.flow);
   document.finish();
   result.effective_text = document.effective_text();

@@ -80,8 +80,9 @@ void read_particles(TomlTable table, Scene& scene) {
 
 void read_dem(TomlTable table, Scene& scene) {
   const std::string engine = table.choice("engine", {"native", "liggghts", "none"}, "native");
-  if (engine == "liggghts") table.problem("engine", "is not built into this program; use \"native\"");
-  scene.engine = engine == "none" ? EngineKind::none : EngineKind::native;
+  scene.engine = engine == "none"       ? EngineKind::none
+                 : engine == "liggghts" ? EngineKind::liggghts
+                                        : EngineKind::native;
   const std::string precision = table.choice("precision", {"double", "mixed"}, "double");
   scene.precision = precision == "mixed" ? Precision::mixed : Precision::full;
   scene.step_s = table.number("step_s", {.unit = "s", .min = 0, .min_exclusive = true}, 0.0);

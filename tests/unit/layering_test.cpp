@@ -86,6 +86,8 @@ TEST(Layering, ThirdPartyHeadersStayInTheirFile) {
       {"hdf5",
        {"dem/scene/hdf5_file", "dem/scene/frame", "dem/scene/snapshot.cpp", "raytrace/view_factor_file.cpp"}},
       {"Random123/", {"dem/scene/random.cpp"}},
+      {"liggghts/", {"dem/liggghts/session.cpp"}},
+      {"mpi.h", {"dem/liggghts/session.cpp"}},
       {"Eigen/", {"coupling/radiosity", "coupling/harmonic_radiosity", "fit/least_squares.cpp"}},
   };
   for (const auto& include : all_includes())

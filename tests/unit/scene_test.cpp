@@ -256,8 +256,6 @@ TEST(Scene, BadScenesAreRefusedWithTheirPlace) {
       {hopper_scene + "particle_count = 10\n", {"[feed.fill_region] is missing; it needs min_m, max_m"}},
       {replaced(hopper_scene + "particle_count = 10\n" + fill, "max_m = [0.01,", "max_m = [0.0005,"),
        {"the fill region must hold a particle"}},
-      {plug_scene + "[dem]\nengine = 'liggghts'\n",
-       {"dem.engine = \"liggghts\" (is not built into this program; use \"native\")"}},
       {plug_scene + "[dem]\nprecision = 'single'\n",
        {"dem.precision = \"single\" (must be one of \"double\", \"mixed\")"}},
       {plug_scene + "[dem]\nstep_s = 0\n", {"dem.step_s = 0 (must be > 0 s)"}},

@@ -1,0 +1,40 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dem/engine.h"
+#include "dem/scene/scene.h"
+
+namespace granrad {
+
+/// The flow solver LIGGGHTS 3.8 (Debian's libliggghts, GPL 2) behind the contract of the native engine: the
+/// field's reference code on the same scene, to check the native engine or to trust its flow. The two share
+/// no line. One process, one thread; optional in a build.
+///
+/// Model: `pair_style gran model hertz tangential history [rolling_friction cdt]`, the law of
+/// dem/hertz_mindlin.h with the same mixing of materials; velocity Verlet (`nve/sphere`), of first order in
+/// the step once contacts dissipate; standing walls as triangle meshes (`mesh/surface`); gravity, periodic
+/// boundaries, spheres of any radii and materials.
+///
+/// A function of the Bed: each advance hands every sphere and spring over anew in the order of the ids and
+/// takes them back, so feeds may change the Bed at will. A resumed run continues bit for bit where it is cut
+/// as the first was, as granrun does. Cut elsewhere it differs by as much as the step's error: LIGGGHTS
+/// starts from forces at whole-step velocities, where inside a run it uses those of half a step before.
+///
+/// Wall springs are stored under the number of their face in the order of walls and triangles: for polygons
+/// the native engine's, so either goes on from a frame of the other; springs at meshes, edges and corners may
+/// start anew there. Faces within 0.26 degrees of each other count as one plane.
+/// LIGGGHTS detects no tunnelling and no deep overlap. Its errors arrive as exceptions; it and MPI stay
+/// silent. MPI starts with the first engine and ends with the process.
+///
+/// advance throws InputError for walls and materials that LIGGGHTS refuses, NumericalError when it stops.
+std::unique_ptr<Engine> make_liggghts_engine(const Vec3& gravity_m_s2, double step_s);
+
+/// What keeps LIGGGHTS from running this scene, each with its key and advice; empty: nothing. A build without
+/// it; a restitution of 0.05 or less; walls with materials of several Young's moduli or Poisson ratios (its
+/// walls have one of each, ours are of each particle's own material); a wall that moves across its own
+/// surface (it keeps the tangential part only).
+std::vector<std::string> liggghts_problems(const Scene& scene);
+
+}  // namespace granrad

@@ -1,0 +1,75 @@
+#include "dem/liggghts/wall_meshes.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "dem/scene/wall_distance.h"
+
+namespace granrad::liggghts {
+
+namespace {
+
+/// The part of a convex polygon where sign x coordinate <= sign x limit.
+std::vector<Vec3> cut(const std::vector<Vec3>& polygon, int axis, double limit, double sign) {
+  std::vector<Vec3> kept;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec3 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
+    const double beyond_a = sign * (a[axis] - limit), beyond_b = sign * (b[axis] - limit);
+    if (beyond_a <= 0) kept.push_back(a);
+    if (beyond_a * beyond_b >= 0) continue;
+    kept.push_back(a + (b - a) * (beyond_a / (beyond_a - beyond_b)));
+    kept.back()[axis] = limit;
+  }
+  return kept;
+}
+
+std::vector<Vec3> inside_periods(std::vector<Vec3> polygon, const Bed& bed) {
+  for (int a = 0; a < 3; ++a)
+    if (bed.periodic[a]) polygon = cut(cut(polygon, a, bed.box.min[a], -1), a, bed.box.max[a], 1);
+  return polygon;
+}
+
+}  // namespace
+
+WallMeshes::WallMeshes(const Bed& bed) {
+  for (const auto& wall : bed.walls) {
+    const bool stands = wall.contact && bed.time_s < wall.opens_at_s;
+    for (const auto& face : faces_of(wall)) {
+      const auto number = static_cast<std::int64_t>(first_.size());
+      first_.push_back({0, -1});
+      const auto corners = inside_periods(face.vertices, bed);
+      if (stands && corners.size() > 2) add(wall, corners, number);
+    }
+  }
+}
+
+void WallMeshes::add(const Wall& wall, const std::vector<Vec3>& corners, std::int64_t face) {
+  auto mesh = std::find_if(meshes_.begin(), meshes_.end(),
+                           [&](const WallMesh& m) { return m.velocity_m_s == wall.velocity_m_s; });
+  if (mesh == meshes_.end()) {
+    mesh = meshes_.insert(mesh, {wall.velocity_m_s, {}});
+    face_.emplace_back();
+  }
+  const auto number = static_cast<std::size_t>(mesh - meshes_.begin());
+  first_[face] = {number, static_cast<std::int32_t>(mesh->triangles.size())};
+  for (std::size_t k = 2; k < corners.size(); ++k) {
+    mesh->triangles.push_back({corners[0], corners[k - 1], corners[k]});
+    face_[number].push_back(face);
+  }
+}
+
+WallMeshes::Place WallMeshes::nearest(std::int64_t face, const Vec3& p) const {
+  if (face < 0 || face >= static_cast<std::int64_t>(first_.size()) || first_[face].triangle < 0)
+    return {0, -1};
+  Place best = first_[face];
+  const auto& faces = face_[best.mesh];
+  double least = std::numeric_limits<double>::infinity();
+  for (auto t = static_cast<std::size_t>(best.triangle); t < faces.size() && faces[t] == face; ++t) {
+    const auto& corners = meshes_[best.mesh].triangles[t];
+    const double distance = distance_to(Wall{.vertices = {corners.begin(), corners.end()}}, p);
+    if (distance < least) least = distance, best.triangle = static_cast<std::int32_t>(t);
+  }
+  return best;
+}
+
+}  // namespace granrad::liggghts
