@@ -1,7 +1,7 @@
 // The paper's whole case beside LIGGGHTS: the moving bed of 13 576 spheres with conduction and radiation, 5 s
-// of flow (500 000 steps), against the time LIGGGHTS takes for the flow alone. LIGGGHTS continues from our
-// last frame for some thousand steps on one core; its time for all steps is that rate, halved as if a second
-// core doubled it. Usage: case_bench [--quick] FOLDER
+// of flow (500 000 steps), in double and in mixed precision, against the time LIGGGHTS takes for the flow
+// alone. LIGGGHTS continues from our last frame for some thousand steps on one core; its time for all steps
+// is that rate, halved as if a second core doubled it. Usage: case_bench [--quick] FOLDER
 #include <fmt/format.h>
 #include <fmt/os.h>
 
@@ -53,28 +53,37 @@ Bed with_meshes(Bed bed) {
   return bed;
 }
 
+/// Seconds of granrun for the scene up to end_s.
+double granrun_seconds(const fs::path& out, double end_s, const std::string& precision) {
+  fs::remove_all(out);
+  return seconds_of(
+      fmt::format("'{}' run '{}/data/scenes/moving_bed_4x4.toml' -q -o '{}' --threads {} --set "
+                  "scene.end_time_s={} --set dem.precision={}",
+                  GRANRUN, GRANRAD_SOURCE_DIR, out.string(), threads, end_s, precision));
+}
+
 int run(const fs::path& folder, bool quick) {
   const double end_s = quick ? 0.1 : 5;
   const auto steps = static_cast<std::int64_t>(end_s / step_s + 0.5);
   const fs::path out = folder / "case";
-  fs::remove_all(out);
-  const double ours = seconds_of(fmt::format(
-      "'{}' run '{}/data/scenes/moving_bed_4x4.toml' -q -o '{}' --threads {} --set scene.end_time_s={}",
-      GRANRUN, GRANRAD_SOURCE_DIR, out.string(), threads, end_s));
+  const double full = granrun_seconds(out, end_s, "double");
+  const double mixed = granrun_seconds(folder / "case_mixed", end_s, "mixed");
   const Bed bed = with_meshes(read_frame(last_frame(out)).bed);
   const int warm_up = 200, measured = quick ? 500 : 4000;
   const auto rate = run_liggghts(folder, bed, {0, 0, -9.81}, warm_up, measured);
   auto csv = fmt::output_file((folder / "case_bench.csv").string());
   csv.print("case,ours,unit,peer,theirs,ratio\n");
-  if (!rate) {
-    fmt::print("paper_case_{}s ours {:.1f} s ({} particles; LIGGGHTS is not installed or failed)\n", end_s,
-               ours, bed.size());
-    return 0;
+  const double theirs = rate ? double(bed.size()) * double(steps) / (*rate * 1e6) / threads : 0;
+  for (const auto& [name, ours] : {std::pair{"paper_case", full}, std::pair{"paper_case_mixed", mixed}}) {
+    if (!rate) {
+      fmt::print("{}_{}s ours {:.1f} s ({} particles; LIGGGHTS is not installed or failed)\n", name, end_s,
+                 ours, bed.size());
+      continue;
+    }
+    fmt::print("{}_{}s ours {:.1f} s liggghts {:.1f} s ratio {:.2f}\n", name, end_s, ours, theirs,
+               theirs / ours);
+    csv.print("{}_{}s,{:.4g},s,liggghts,{:.4g},{:.4g}\n", name, end_s, ours, theirs, theirs / ours);
   }
-  const double theirs = double(bed.size()) * double(steps) / (*rate * 1e6) / threads;
-  fmt::print("paper_case_{}s ours {:.1f} s liggghts {:.1f} s ratio {:.2f}\n", end_s, ours, theirs,
-             theirs / ours);
-  csv.print("paper_case_{}s,{:.4g},s,liggghts,{:.4g},{:.4g}\n", end_s, ours, theirs, theirs / ours);
   return 0;
 }
 
