@@ -20,6 +20,7 @@ inline Bed settled_bed(int nx = 1, int ny = 1) {
   Material m;
   m.density_kg_m3 = 3984, m.youngs_modulus_Pa = 5e6, m.poisson_ratio = 0.23;
   m.restitution = 0.45, m.friction = 0.4;
+  m.conductivity_W_mK = 33, m.specific_heat_J_kgK = 755, m.real_youngs_modulus_Pa = 3.7e11;
   bed.materials = {m};
   for (int a = 0; a < nx; ++a)
     for (int b = 0; b < ny; ++b)

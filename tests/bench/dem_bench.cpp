@@ -7,6 +7,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <sstream>
 #include <string_view>
 #include <vector>
@@ -139,10 +140,6 @@ struct Line {
 class Report {
  public:
   explicit Report(std::filesystem::path folder) : folder_(std::move(folder)) {}
-  void side_by_side(const std::string& name, double ours, const std::string& peer,
-                    std::optional<double> theirs) {
-    if (theirs) add({name + "_" + peer, ours, "Mpsteps/s", peer, *theirs});
-  }
   void add(const Line& l) {
     fmt::print("{} ours {:.3g} {} {} {:.3g} {} ratio {:.2f}\n", l.name, l.ours, l.unit, l.peer, l.theirs,
                l.unit, l.ours / l.theirs);
@@ -187,6 +184,17 @@ class Report {
 /// What the peers run: the decks stored beside the bed (300 steps of warm-up), or decks written for it.
 enum class Decks { stored, both, liggghts };
 
+/// Whom a case is measured against, the best of all rounds in million particle-steps per second.
+struct Rival {
+  std::string name;
+  bool is_peer;  ///< else another way of our own
+  std::function<std::optional<double>()> run;
+  double best = 0;
+};
+
+/// All rivals take turns this often and keep their best: what else the machine does changes within seconds.
+constexpr int rounds = 3;
+
 int run(const std::filesystem::path& folder, bool quick) {
   std::filesystem::create_directories(folder);
   Report report(folder);
@@ -194,39 +202,50 @@ int run(const std::filesystem::path& folder, bool quick) {
   const int scale = quick ? 1 : 4, warm_up = 300;
   const auto compare = [&](const std::string& name, const Bed& bed, const Vec3& gravity, int steps,
                            int peer_steps, Decks decks) {
-    const auto one = measure(bed, gravity, warm_up, steps);
-    report.note(fmt::format("{}: {} particles, {:.1f} ns per contact, {:.0f} bytes per particle", name,
-                            bed.size(), one.ns_per_contact, one.bytes_per_particle));
-    const auto peer = [&](const std::string& program, const std::string& deck, auto run_own) {
-      report.side_by_side(name, one.million_steps, program,
-                          decks == Decks::stored
-                              ? run_stored(program, data_folder / deck, folder, bed, peer_steps)
-                              : run_own());
+    const auto ours = [&](const Way& way) {
+      return [&, way] { return std::optional(measure(bed, gravity, warm_up, steps, way).million_steps); };
     };
-    peer("liggghts", "in.lig", [&] { return run_liggghts(folder, bed, gravity, warm_up, peer_steps); });
+    const auto stored = [&](const std::string& program, const std::string& deck) {
+      return run_stored(program, data_folder / deck, folder, bed, peer_steps);
+    };
+    std::vector<Rival> rivals;
+    rivals.push_back({"liggghts", true, [&] {
+                        return decks == Decks::stored
+                                   ? stored("liggghts", "in.lig")
+                                   : run_liggghts(folder, bed, gravity, warm_up, peer_steps);
+                      }});
     if (decks != Decks::liggghts)
-      peer("lammps", "in.lmp", [&] { return run_lammps(folder, bed, warm_up, peer_steps); });
-    const auto again = [&](const std::string& what, const Way& way, const std::string& against) {
-      report.add({name + "_" + what, measure(bed, gravity, warm_up, steps, way).million_steps, "Mpsteps/s",
-                  against, one.million_steps});
-    };
-    again("two_threads", {.threads = 2}, "one_thread");
-    again("mixed", {.precision = Precision::mixed}, "double");
-    again("conducting", {.conducts = true}, "flow_alone");
-    return one.million_steps;
-  };
-  const Bed bed = settled_bed(1, 1);
-  const double best = compare("bed_12k", bed, down, 1000 * scale, 500 * scale, Decks::stored);
-  report.add({"bed_12k_baseline", best, "Mpsteps/s", "baseline",
-              measure(bed, down, warm_up, 500, {.kernels = &native::baseline_kernels()}).million_steps});
+      rivals.push_back({"lammps", true, [&] {
+                          return decks == Decks::stored ? stored("lammps", "in.lmp")
+                                                        : run_lammps(folder, bed, warm_up, peer_steps);
+                        }});
+    if (decks == Decks::stored)
+      rivals.push_back({"baseline", true, ours({.kernels = &native::baseline_kernels()})});
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) {
-    const double avx2 =
-        measure(bed, down, warm_up, 500 * scale, {.kernels = &native::avx2_kernels()}).million_steps;
-    report.side_by_side("bed_12k_avx2", avx2, "liggghts",
-                        run_stored("liggghts", data_folder / "in.lig", folder, bed, 500 * scale));
-  }
+    if (decks == Decks::stored && __builtin_cpu_supports("avx2"))
+      rivals.push_back({"avx2", false, ours({.kernels = &native::avx2_kernels()})});
 #endif
+    rivals.push_back({"two_threads", false, ours({.threads = 2})});
+    rivals.push_back({"mixed", false, ours({.precision = Precision::mixed})});
+    rivals.push_back({"conducting", false, ours({.conducts = true})});
+    Speed best;
+    for (int round = 0; round < rounds; ++round) {
+      const auto one = measure(bed, gravity, warm_up, steps);
+      if (one.million_steps > best.million_steps) best = one;
+      for (auto& rival : rivals) rival.best = std::max(rival.best, rival.run().value_or(0));
+    }
+    report.note(fmt::format("{}: {} particles, {:.1f} ns per contact, {:.0f} bytes per particle", name,
+                            bed.size(), best.ns_per_contact, best.bytes_per_particle));
+    for (const auto& rival : rivals) {
+      if (rival.best == 0) continue;
+      if (rival.is_peer)
+        report.add({name, best.million_steps, "Mpsteps/s", rival.name, rival.best});
+      else
+        report.add(
+            {name + "_" + rival.name, rival.best, "Mpsteps/s", "double_one_thread", best.million_steps});
+    }
+  };
+  compare("bed_12k", settled_bed(1, 1), down, 1000 * scale, 500 * scale, Decks::stored);
   compare("moving_bed_meshes", moving_bed(), down, 1000 * scale, 500 * scale, Decks::liggghts);
   compare("plug_phi007", dilute_plug(), {}, 1000 * scale, 1000 * scale, Decks::liggghts);
   compare("bed_100k", settled_bed(4, 2), down, 200 * scale, 50 * scale, Decks::both);
