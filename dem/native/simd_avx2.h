@@ -6,22 +6,11 @@
 namespace granrad::native {
 
 /// Four contacts at once in 256-bit registers. Operations as in ScalarPack.
-struct Avx2Pack {
+struct Avx2Pack : LawInDouble<Avx2Pack> {
   static constexpr int width = 4;
   typedef double V __attribute__((vector_size(32)));
   using M = __m256d;
   using I = __m256i;
-
-  // As a pack of the law (see pair_bodies.h): double precision needs no second kind of number.
-  using Wide = Avx2Pack;
-  static constexpr int halves = 1;
-  GRANRAD_INLINE V narrow(const V a[1]) { return a[0]; }
-  GRANRAD_INLINE void widen(V a, V out[1]) { out[0] = a; }
-  GRANRAD_INLINE V overlap(V sum, V distance, V) { return sum - distance; }
-  template <class Rows>
-  GRANRAD_INLINE const double* motion(const Rows& rows) {
-    return rows.velocity;
-  }
 
   GRANRAD_INLINE V set(double x) { return _mm256_set1_pd(x); }
   GRANRAD_INLINE V load(const double* p) { return _mm256_loadu_pd(p); }

@@ -6,26 +6,39 @@
 
 namespace granrad::native {
 
-/// The instruction sets differ in their pack: `width` contacts worked on at once. Every pack offers the same
-/// operations with the same rounding (IEEE, nothing fused), so that all give the same bits. Rows are arrays
-/// indexed by particle: position {x, y, z, reach}, velocity {v, limit, omega, -}, force {F, -, torque, -} in
-/// fixed point. This one works on a single contact in plain C++ and needs no instruction set at all.
-struct ScalarPack {
-  static constexpr int width = 1;
-  using V = double;        ///< `width` doubles
-  using M = bool;          ///< a mask, one truth value a lane
-  using I = std::int64_t;  ///< `width` integers
-
-  // As a pack of the law (see pair_bodies.h): double precision needs no second kind of number.
-  using Wide = ScalarPack;
+/// What a pack needs beside its operations to work the law of contacts in double precision (pair_bodies.h):
+/// it is its own wide pack, so that numbers are neither narrowed nor widened.
+template <class Pack>
+struct LawInDouble {
+  using Wide = Pack;
   static constexpr int halves = 1;
-  GRANRAD_INLINE V narrow(const V a[1]) { return a[0]; }
-  GRANRAD_INLINE void widen(V a, V out[1]) { out[0] = a; }
-  GRANRAD_INLINE V overlap(V sum, V distance, V) { return sum - distance; }
+  template <class V>
+  GRANRAD_INLINE V narrow(const V a[1]) {
+    return a[0];
+  }
+  template <class V>
+  GRANRAD_INLINE void widen(V a, V out[1]) {
+    out[0] = a;
+  }
+  template <class V>
+  GRANRAD_INLINE V overlap(V sum, V distance, V) {
+    return sum - distance;
+  }
   template <class Rows>
   GRANRAD_INLINE const double* motion(const Rows& rows) {
     return rows.velocity;
   }
+};
+
+/// The instruction sets differ in their pack: `width` contacts worked on at once. Every pack offers the same
+/// operations with the same rounding (IEEE, nothing fused), so that all give the same bits. Rows are arrays
+/// indexed by particle: position {x, y, z, reach}, velocity {v, limit, omega, -}, force {F, -, torque, -} in
+/// fixed point. This one works on a single contact in plain C++ and needs no instruction set at all.
+struct ScalarPack : LawInDouble<ScalarPack> {
+  static constexpr int width = 1;
+  using V = double;        ///< `width` doubles
+  using M = bool;          ///< a mask, one truth value a lane
+  using I = std::int64_t;  ///< `width` integers
 
   GRANRAD_INLINE V set(double x) { return x; }
   GRANRAD_INLINE V load(const double* p) { return *p; }
