@@ -98,4 +98,13 @@ inline CaseEnd case_end(const std::string& file, double id) {
   return {{found[5], found[6], found[7]}, {found[8], found[9], found[10]}};
 }
 
+/// Velocity and spin of particle i are those of the case's end within `tolerance` of their size.
+inline void expect_end(const Bed& bed, int i, const std::string& file, double tolerance) {
+  const auto want = case_end(file, i + 1);
+  EXPECT_LE(norm(bed.velocity_m_s[i] - want.velocity_m_s), tolerance * norm(want.velocity_m_s)) << file << i;
+  EXPECT_LE(norm(bed.angular_velocity_rad_s[i] - want.angular_velocity_rad_s),
+            tolerance * norm(want.angular_velocity_rad_s))
+      << file << i;
+}
+
 }  // namespace granrad

@@ -22,14 +22,6 @@ void advance_in_pieces(Engine& engine, Bed& bed, double step_s, std::int64_t ste
     engine.advance(bed, double(std::min(steps, k + piece)) * step_s);
 }
 
-void expect_end(const Bed& bed, int i, const std::string& file, double tolerance) {
-  const auto want = case_end(file, i + 1);
-  EXPECT_LE(norm(bed.velocity_m_s[i] - want.velocity_m_s), tolerance * norm(want.velocity_m_s)) << file << i;
-  EXPECT_LE(norm(bed.angular_velocity_rad_s[i] - want.angular_velocity_rad_s),
-            tolerance * norm(want.angular_velocity_rad_s))
-      << file << i;
-}
-
 // The decks touch planes where we give triangles, and read rounded numbers.
 constexpr double exactly = 1e-11;
 
@@ -154,8 +146,8 @@ double speed_rms(const Bed& bed) {
 }
 
 // The bed starts without springs and settles anew, at the same speeds and to the same places; LIGGGHTS is
-// handed its springs four times. Planted: springs of pairs, of walls not handed over; a pair's spring with the
-// same sign for both spheres; wall springs given to another triangle.
+// handed its springs four times. Planted: springs of pairs, of walls not handed over; a pair's spring with
+// the same sign for both spheres; wall springs given to another triangle.
 TEST(LiggghtsEngine, settled_bed_settles_as_in_the_native_engine) {
   Bed ours = settled_bed(), theirs = ours;
   const auto native = make_native_engine(ours, weight, 1e-5), engine = make_liggghts_engine(weight, 1e-5);

@@ -46,14 +46,6 @@ TEST(TwoBody, sliding_sphere_ends_rolling) {
   EXPECT_NEAR(bed.velocity_m_s[0].x, 0.1 * 5 / 7, 2e-5);
 }
 
-void expect_end(const Bed& bed, int i, const std::string& file, double tolerance) {
-  const auto want = case_end(file, i + 1);
-  EXPECT_LT(norm(bed.velocity_m_s[i] - want.velocity_m_s), tolerance * norm(want.velocity_m_s)) << file << i;
-  EXPECT_LT(norm(bed.angular_velocity_rad_s[i] - want.angular_velocity_rad_s),
-            tolerance * norm(want.angular_velocity_rad_s))
-      << file << i;
-}
-
 // Planted: the law of the first material for the pair; the arm of the first sphere for both.
 TEST(TwoBody, unequal_spheres_of_two_materials_match_liggghts) {
   for (const bool rolling : {false, true}) {
