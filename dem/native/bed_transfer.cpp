@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <omp.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 
@@ -139,7 +142,8 @@ std::vector<Memory> BedTransfer::memories(const Bed& bed) {
   return all;
 }
 
-void BedTransfer::store(const Rows& rows, const std::vector<Memory>& memories, int threads, Bed& bed) {
+void BedTransfer::store(const Rows& rows, const std::vector<Share>& shares, Bed& bed) {
+  const auto threads = static_cast<int>(shares.size());
   std::int64_t broken = -1;
 #pragma omp parallel for num_threads(threads) schedule(static) reduction(max : broken)
   for (std::int64_t i = 0; i < rows.count; ++i) {
@@ -156,19 +160,34 @@ void BedTransfer::store(const Rows& rows, const std::vector<Memory>& memories, i
     throw NumericalError(
         fmt::format("particle {} left the range of numbers try a smaller step or less overlap at the start",
                     bed.id[broken]));
-  // Sorted by (first, second): by buckets of the first, which are short.
-  std::vector<std::int64_t> begin(rows.count + 2, 0);
-  for (const auto& m : memories) ++begin[m.first + 2];
-  for (std::size_t k = 2; k < begin.size(); ++k) begin[k] += begin[k - 1];
-  bed.contacts.resize(memories.size());
-  for (const auto& m : memories) {
-    const Vec3 s = m.displacement + Vec3{};  // no negative zeros: equal states have equal bits
-    bed.contacts[begin[m.first + 1]++] = {bed.id[m.first], m.second >= 0 ? bed.id[m.second] : m.second, s};
+  store_springs(rows, shares, bed);
+}
+
+/// Sorted by (first, second): by buckets of the first, which are short.
+void BedTransfer::store_springs(const Rows& rows, const std::vector<Share>& shares, Bed& bed) {
+  const auto threads = static_cast<int>(shares.size());
+  bucket_.assign(rows.count + 2, 0);
+  const auto next = [&](std::int64_t& place) {
+    return threads == 1 ? place++ : std::atomic_ref(place).fetch_add(1, std::memory_order_relaxed);
+  };
+#pragma omp parallel num_threads(threads)
+  shares[omp_get_thread_num()].visit_springs(
+      rows, [&](std::int32_t a, std::int64_t, const Vec3&) { next(bucket_[a + 2]); });
+  for (std::size_t k = 2; k < bucket_.size(); ++k) bucket_[k] += bucket_[k - 1];
+  bed.contacts.resize(bucket_.back());
+#pragma omp parallel num_threads(threads)
+  {
+    const auto put = [&](std::int32_t a, std::int64_t b, const Vec3& s) {
+      // No negative zeros: equal states have equal bits.
+      bed.contacts[next(bucket_[a + 1])] = {bed.id[a], b >= 0 ? bed.id[b] : b, s + Vec3{}};
+    };
+    shares[omp_get_thread_num()].visit_springs(rows, put);
+#pragma omp barrier
+#pragma omp for schedule(static)
+    for (std::int64_t i = 0; i < rows.count; ++i)
+      std::sort(bed.contacts.begin() + bucket_[i], bed.contacts.begin() + bucket_[i + 1],
+                [](const ContactMemory& a, const ContactMemory& b) { return a.second < b.second; });
   }
-#pragma omp parallel for num_threads(threads) schedule(static)
-  for (std::int64_t i = 0; i < rows.count; ++i)
-    std::sort(bed.contacts.begin() + begin[i], bed.contacts.begin() + begin[i + 1],
-              [](const ContactMemory& a, const ContactMemory& b) { return a.second < b.second; });
   contacts_ = bed.contacts;
 }
 

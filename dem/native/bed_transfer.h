@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "dem/native/rows.h"
+#include "dem/native/share.h"
 #include "dem/scene/bed.h"
 
 namespace granrad::native {
@@ -16,8 +17,8 @@ class BedTransfer {
   Change load(const Bed& bed, Rows& rows, double half_step_s, int threads);
   /// The memories of the Bed by index, after a load that reported `memory` or `particles`.
   static std::vector<Memory> memories(const Bed& bed);
-  /// Writes positions, velocities and memories back. Throws NumericalError for a value that is not a number.
-  void store(const Rows& rows, const std::vector<Memory>& memories, int threads, Bed& bed);
+  /// Writes positions, velocities and springs back. Throws NumericalError for a value that is not a number.
+  void store(const Rows& rows, const std::vector<Share>& shares, Bed& bed);
   /// Whether the rows hold this Bed: its particles, where they stand.
   bool holds(const Bed& bed, const Rows& rows) const;
   const std::vector<Material>& materials() const { return materials_; }
@@ -25,11 +26,13 @@ class BedTransfer {
  private:
   bool same_particles(const Bed& bed) const;
   void lay_out(const Bed& bed, Rows& rows, int threads);
+  void store_springs(const Rows& rows, const std::vector<Share>& shares, Bed& bed);
   std::vector<std::int64_t> id_;
   std::vector<double> radius_;
   std::vector<std::int32_t> material_;
   std::vector<Material> materials_;
   std::vector<ContactMemory> contacts_;
+  std::vector<std::int64_t> bucket_;  ///< where the springs of each particle begin in the Bed
 };
 
 }  // namespace granrad::native

@@ -14,6 +14,7 @@ namespace {
 /// flat. A row in fast flight has a wider skin of its own, so that a few do not end the list of all.
 constexpr double half_skin = 0.25, smallest_margin = 0.01, widest_half_skin = 0.6, widest_own_skin = 4;
 constexpr double skin_lives = 4, slow_share = 0.9;  ///< tight lists a skin is made for; rows that share one
+constexpr int longest_life = 4;                     ///< of a tight list where little moves, in usual lives
 const double diagonal = 1.0001 * std::sqrt(3.0);    ///< speed limits hold for each direction alone
 double largest_component(const Vec3& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
@@ -35,17 +36,21 @@ double ContactLists::margin_of(double speed, std::int64_t steps) const {
   return diagonal * (speed + spare_speed_m_s_) * step_s_ * double(steps);
 }
 
-void ContactLists::check_speeds(const Rows& rows, const Bed& bed) const {
+void ContactLists::survey_speeds(const Rows& rows, const Bed& bed) {
   std::int64_t tunnels = rows.count;
+  double sum = 0;
 #pragma omp parallel for num_threads(static_cast <int>(shares_.size())) schedule(static) \
     reduction(min                                                                        \
-              : tunnels)
+              : tunnels) reduction(+                                                     \
+                                   : sum)
   for (std::int64_t i = 0; i < rows.count; ++i) {
     const Vec3 v = rows.velocity_of(i), p = rows.position_of(i);
     const bool sound =
         is_finite(v) && is_finite(p) && largest_component(v) <= fastest_step * rows.radius[i] / step_s_;
     if (!sound) tunnels = std::min(tunnels, i);
+    sum += largest_component(v - mean_velocity_);
   }
+  usual_speed_m_s_ = rows.count ? sum / double(rows.count) : 0;
   if (tunnels == rows.count) return;
   const Vec3 v = rows.velocity_of(tunnels), p = rows.position_of(tunnels);
   const double advised = 0.5 * fastest_step * rows.radius[tunnels] / largest_component(v);
@@ -116,16 +121,18 @@ void ContactLists::anticipate(Rows& rows, Model& model, const Periods& periods, 
     share.cross.find_closing_speeds(kernels_, rows.view(), model.constants, true, closing_);
     share.walls.find_closing_speeds(surface, rows, periods, model.constants.life_s, closing_);
   }
-  const auto meets = [](double speed) { return speed > 0; };
+  const auto meets = [&](double speed) { return speed > 0.1 * spare_speed_m_s_; };
   if (std::any_of(closing_.begin(), closing_.end(), meets)) set_reaches(rows, steps);
 }
 
-std::int64_t ContactLists::wanted_life(const Rows& rows) const {
+std::int64_t ContactLists::wanted_life(const Rows& rows, double largest_radius) const {
   std::int64_t contacts = 0;
   for (const auto& s : shares_)
     contacts += s.own.tight_count() + s.cross.tight_count() + s.walls.contact_count();
-  const bool dilute = refreshes > 1 && 8 * contacts < rows.count;
-  return dilute ? 3 * schedule_.refresh_every : schedule_.refresh_every;
+  const std::int64_t usual = schedule_.refresh_every;
+  if (refreshes > 1 && 8 * contacts < rows.count) return 3 * usual;
+  const double crossing = smallest_margin * largest_radius / (2 * diagonal * usual_speed_m_s_ * step_s_);
+  return static_cast<std::int64_t>(std::clamp(crossing, double(usual), double(longest_life * usual)));
 }
 
 void ContactLists::sort_rows(Rows& rows, const Periods& periods, const Bed& bed, double cell_m) {
@@ -187,13 +194,13 @@ std::int64_t ContactLists::prepare(Rows& rows, Model& model, const Periods& peri
   if (life_ > 0) return life_;
   ++refreshes;
   step_s_ = model.constants.step_s;
-  std::int64_t steps = wanted_life(rows);
+  survey_speeds(rows, bed);
+  std::int64_t steps = wanted_life(rows, model.largest_radius);
   has_walls_ = surface.facet_count() > 0;
   spare_speed_m_s_ =
       std::max(spare_speed_m_s_, smallest_margin * model.largest_radius / (step_s_ * double(steps)));
-  check_speeds(rows, bed);
   closing_.assign(rows.count + 2 * shares_.size(), 0);
-  const Room room = measure(rows, steps);
+  Room room = measure(rows, steps);
   const bool due = (schedule_.rebuild_every > 0 && steps_since_sort_ >= schedule_.rebuild_every) ||
                    listed_gap_m_ < asked_gap_m_;
   const bool rebuild = stale_ || due || room.near_m < 0;
@@ -226,15 +233,15 @@ std::int64_t ContactLists::prepare(Rows& rows, Model& model, const Periods& peri
     memories_.clear();
     stale_ = false, walls_stale_ = true;
   }
-  if (walls_stale_ || room.walls_m < 0) {
+  const bool walls_due = walls_stale_ || room.walls_m < 0;
+  if (walls_due) {
     find_walls(rows, periods, surface);
     walls_stale_ = false;
   }
-  while (steps > 1) {  // a fast particle shortens the life of the list
-    const Room left = measure(rows, steps);
-    if (std::min(left.near_m, left.walls_m) >= 0) break;
-    steps /= 2;
-  }
+  if (rebuild || walls_due) room = measure(rows, steps);
+  while (steps > 1 &&
+         std::min(room.near_m, room.walls_m) < 0)  // a fast particle shortens the life of the list
+    room = measure(rows, steps /= 2);
   anticipate(rows, model, periods, surface, steps);
   const bool varied = !rows.uniform;
 #pragma omp parallel num_threads(static_cast <int>(shares_.size()))
@@ -262,15 +269,13 @@ void ContactLists::spend(std::int64_t steps, bool limit_broken) {
 }
 
 std::vector<Memory> ContactLists::collect(const Rows& rows) const {
-  if (stale_) return memories_;
   std::vector<std::vector<Memory>> parts(shares_.size());
 #pragma omp parallel num_threads(static_cast <int>(shares_.size()))
   {
     const int t = omp_get_thread_num();
-    shares_[t].own.collect(rows, false, parts[t]);
-    shares_[t].cross.collect(rows, true, parts[t]);
-    for (const auto& m : shares_[t].walls.collect())
-      parts[t].push_back({rows.bed_index[m.row], -1 - m.feature, m.displacement});
+    shares_[t].visit_springs(rows, [&](std::int32_t a, std::int64_t b, const Vec3& s) {
+      parts[t].push_back({a, b, s});
+    });
   }
   std::vector<Memory> all;
   for (auto& part : parts) all.insert(all.end(), part.begin(), part.end());

@@ -11,7 +11,8 @@ namespace granrad::native {
 
 /// How often lists are made anew; results do not depend on it.
 struct ListSchedule {
-  int refresh_every = 16;  ///< steps a tight list is made to live; three times that where few meet
+  int refresh_every = 16;  ///< steps a tight list is made to live; up to four times that where few meet or
+                           ///< little moves
   int rebuild_every =
       0;  ///< 0: near lists when someone has moved through the skin; else also every so many steps
 };
@@ -35,7 +36,6 @@ class ContactLists {
 
   std::vector<Share>& shares() { return shares_; }
   const std::vector<Share>& shares() const { return shares_; }
-  std::vector<Memory> collect(const Rows& rows) const;
   /// Someone reads the near lists: those made from now on stay complete for this gap as long as they live.
   void keep_complete_to(double gap_m) { asked_gap_m_ = std::max(asked_gap_m_, gap_m); }
   /// Gaps up to which the near lists are complete for the positions now in the rows; negative: not at all.
@@ -52,14 +52,16 @@ class ContactLists {
     double near_m, walls_m;
   };
   /// Steps the next tight lists should live.
-  std::int64_t wanted_life(const Rows& rows) const;
+  std::int64_t wanted_life(const Rows& rows, double largest_radius) const;
+  std::vector<Memory> collect(const Rows& rows) const;
   double margin_of(double speed, std::int64_t steps) const;
   void anticipate(Rows& rows, Model& model, const Periods& periods, const WallSurface& surface,
                   std::int64_t steps);
   Room room_of(const Rows& rows, std::int64_t i, const Vec3& moved) const;
   /// The least of any row after `steps` more.
   Room measure(const Rows& rows, std::int64_t steps) const;
-  void check_speeds(const Rows& rows, const Bed& bed) const;
+  /// Throws for a particle that tunnels; finds the usual speed.
+  void survey_speeds(const Rows& rows, const Bed& bed);
   void set_reaches(Rows& rows, std::int64_t steps);
   void sort_rows(Rows& rows, const Periods& periods, const Bed& bed, double cell_m);
   void choose_skins(const Rows& rows, double largest_radius, std::int64_t steps);
@@ -77,6 +79,7 @@ class ContactLists {
   Skins skins_;
   Vec3 mean_velocity_{};
   double step_s_ = 0, spare_speed_m_s_ = 0;
+  double usual_speed_m_s_ = 0;  ///< mean of the rows' speeds beside the mean velocity
   double asked_gap_m_ = -1, listed_gap_m_ = 0, listed_wall_gap_m_ = 0;  ///< gaps that outlive the skin
   std::int64_t life_ = 0, promised_ = 0, steps_since_sort_ = 0;
   bool has_walls_ = true;

@@ -14,13 +14,14 @@ struct RowView {
   float* motion;        ///< [8] the velocity rows rounded, for mixed precision; nullptr in double
 };
 
-/// Contacts between two rows, or a row and a plane. `count` is a multiple of 8; entries up to 64 beyond it
-/// are valid rows (prefetching looks there).
+/// Contacts between two rows (`count` a multiple of 16), or a row and a plane (of 8); entries up to 64 beyond
+/// it are valid rows (prefetching looks there).
 struct ContactView {
   const std::int32_t* first;
   const std::int32_t* second;
   std::int64_t count;
-  double* displacement[3];
+  double* displacement[3];  ///< tangential springs, m
+  float* rounded[3];        ///< the same where the law is in single precision
   const double*
       varied;  ///< nullptr: `StepConstants::pair`; else columns of `stride` doubles, see VariedColumn
   std::int64_t stride;

@@ -123,12 +123,20 @@ std::int64_t NativeEngine::Impl::run(std::int64_t steps, bool finishes, bool& li
     barrier.wait();
     for (std::int64_t k = 0; k < steps && !stop; ++k) {
       deepest = std::max(
-          {deepest, all_contacts(view, share.own.view(), model.constants),
-           first_contacts(view, share.cross.view(), model.constants),
+          {deepest, first_contacts(view, share.cross.view(), model.constants),
            share.walls.add_forces(kernels, *surface, rows, *periods, model.constants, transfer.materials())});
-      barrier.wait();
-      share.too_fast =
-          kernels.move(view, share.range.begin, share.range.end, model.move, finishes && k + 1 == steps);
+      barrier.wait();  // now no one else needs these rows where they are
+      share.too_fast = false;
+      std::int64_t moved = share.range.begin;
+      const auto move_rows_before = [&](std::int64_t end) {
+        share.too_fast |= kernels.move(view, moved, end, model.move, finishes && k + 1 == steps);
+        moved = end;
+      };
+      for (std::int64_t b = 0; b < share.own.blocks(); ++b) {
+        deepest = std::max(deepest, all_contacts(view, share.own.view_of(b), model.constants));
+        move_rows_before(std::min(share.own.settled_before(b), share.range.end));
+      }
+      move_rows_before(share.range.end);
       barrier.wait();
       for (const auto& s : shares) stop |= s.too_fast;
 #pragma omp master
@@ -195,7 +203,7 @@ void NativeEngine::advance(Bed& bed, double until_s) {
       e.lists->walls_changed();
     }
   }
-  e.transfer.store(e.rows, e.lists->collect(e.rows), static_cast<int>(e.lists->shares().size()), bed);
+  e.transfer.store(e.rows, e.lists->shares(), bed);
   bed.step = last;
   bed.time_s = e.left_at_s = clock.time_s(last);
 }

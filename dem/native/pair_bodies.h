@@ -9,12 +9,13 @@ namespace granrad::native {
 inline constexpr std::int64_t chunk =
     32;  ///< contacts between gathering and scattering; their data stays in L1
 
-/// S works the law in its own numbers V. Differences of positions, the test for touching and the sums are
-/// double in any case, in S::halves packs of D = S::Wide (one, S itself, in double precision).
+/// S works the law in its own numbers V (of Lane). Differences of positions, the test for touching and the
+/// sums are double in any case, in S::halves packs of D = S::Wide (one, S itself, in double precision).
 template <class S>
 struct PairBodies {
   using D = typename S::Wide;
   using V = typename S::V;
+  using Lane = typename S::Lane;
   static constexpr int W = S::width, H = S::halves;
   static constexpr std::int64_t packs = chunk / W;
 
@@ -39,7 +40,8 @@ struct PairBodies {
             value(tangential_damping), value(friction), value(rolling)};
   }
   GRANRAD_INLINE double largest(V v) {
-    double lane[W], m = -1e300;
+    Lane lane[W];
+    double m = -1e300;
     S::store(lane, v);
     for (double x : lane) m = x > m ? x : m;
     return m;
@@ -82,9 +84,10 @@ struct PairBodies {
                               const HertzMindlin<V>& uniform, std::int64_t k, const Gathered& in,
                               Scattered& out, V& deepest) {
     const V half = S::set(0.5);
+    const auto* springs = S::springs(c);
     out.live = S::any(S::less(V{}, in.excess));
     if (!out.live) {
-      for (auto* s : c.displacement) S::store(s + k, V{});
+      for (int a = 0; a < 3; ++a) S::store(springs[a] + k, V{});
       return;
     }
     V ri, rj;
@@ -100,13 +103,13 @@ struct PairBodies {
       state.normal[a] = in.away[a] * inverse;
       state.velocity[a] = in.velocity[a];
       state.arm_spin[a] = varied ? arm_i * in.spin[a] + arm_j * in.other_spin[a] : arm_i * in.spin[a];
-      state.displacement[a] = S::load(c.displacement[a] + k);
+      state.displacement[a] = S::load(springs[a] + k);
     }
     const HertzMindlin<V> law = varied ? varied_law(c, k) : uniform;
     const auto result = contact_force<S>(law, S::set(constants.step_s), state);
     const V smaller = varied ? S::select(S::less(ri, rj), ri, rj) : ri;
     deepest = S::max(deepest, state.overlap - S::set(deepest_overlap) * smaller);
-    for (int a = 0; a < 3; ++a) S::store(c.displacement[a] + k, state.displacement[a]);
+    for (int a = 0; a < 3; ++a) S::store(springs[a] + k, state.displacement[a]);
     to_fixed3(result.force, constants.force_scale, out.force);
     V ti[3], tj[3];
     for (int a = 0; a < 3; ++a) ti[a] = -arm_i * result.moment[a];

@@ -1,15 +1,14 @@
 #include "dem/native/pair_list.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "dem/native/materials.h"
 
 namespace granrad::native {
 namespace {
-constexpr std::int64_t look_ahead = 64;  ///< entries behind the end that prefetching may read
-bool is_zero(double x, double y, double z) {
-  return x == 0 && y == 0 && z == 0;
-}
+constexpr std::int64_t look_ahead = 64;   ///< entries behind the end that prefetching may read
+constexpr std::int64_t widest_pack = 16;  ///< contacts that a kernel works on at once
 }  // namespace
 
 void MemoryTable::build(const std::vector<Memory>& memories, const Rows& rows) {
@@ -35,6 +34,13 @@ Vec3 MemoryTable::find(std::int32_t i, std::int32_t j) const {
   return {};
 }
 
+void PairList::add_near(std::int32_t i, std::int32_t j) {
+  if (j < i)
+    backward_.push_back({i, j});
+  else
+    near_i_.push_back(i), near_j_.push_back(j);
+}
+
 void PairList::add_near(std::int32_t i, const std::int32_t* found, std::int64_t count) {
   near_j_.insert(near_j_.end(), found, found + count);
   near_i_.insert(near_i_.end(), count, i);
@@ -42,13 +48,22 @@ void PairList::add_near(std::int32_t i, const std::int32_t* found, std::int64_t 
 
 void PairList::finish_near(std::int32_t idle_row) {
   idle_row_ = idle_row;
+  // Pairs whose first row is the higher come first: behind them, rows are done with in their order.
+  const auto put_first = [&](AlignedVector<std::int32_t>& column, auto member) {
+    AlignedVector<std::int32_t> all;
+    all.reserve(backward_.size() + column.size() + 8);
+    for (const auto& pair : backward_) all.push_back(pair.*member);
+    all.insert(all.end(), column.begin(), column.end());
+    column.swap(all);
+  };
+  put_first(near_i_, &RowPair::first), put_first(near_j_, &RowPair::second);
   near_count_ = static_cast<std::int64_t>(near_i_.size());
-  while (near_i_.size() % 8) add_near(idle_row, idle_row + 1);
+  while (near_i_.size() % 8) near_i_.push_back(idle_row), near_j_.push_back(idle_row + 1);
   fresh_ = true;
 }
 
 std::int64_t PairList::select(const Kernels& kernels, const RowView& rows, const StepConstants& constants) {
-  const auto room = static_cast<std::int64_t>(near_i_.size()) + 8 + look_ahead + 8;
+  const auto room = static_cast<std::int64_t>(near_i_.size()) + widest_pack + look_ahead + 8;
   next_first_.resize(room), next_second_.resize(room), next_source_.resize(room);
   return kernels.select_close(rows, constants, near_i_.data(), near_j_.data(),
                               static_cast<std::int64_t>(near_i_.size()), next_first_.data(),
@@ -71,29 +86,38 @@ void PairList::find_closing_speeds(const Kernels& kernels, const RowView& rows,
 void PairList::refresh(const Kernels& kernels, const RowView& rows, const StepConstants& constants,
                        const MemoryTable& memories) {
   const auto found = select(kernels, rows, constants);
-  const auto padded = (found + 7) / 8 * 8;
+  const auto padded = (found + widest_pack - 1) / widest_pack * widest_pack;
   for (auto k = found; k < padded + look_ahead; ++k)
     next_first_[k] = idle_row_, next_second_[k] = idle_row_ + 1;
-  for (auto& column : next_displacement_) column.resize(padded);
-  const auto put = [&](std::int64_t k, const Vec3& s) {
-    for (int a = 0; a < 3; ++a) next_displacement_[a][k] = s[a];
-  };
+  next_springs_.resize(padded, rows.motion != nullptr);
   std::int64_t old = 0;
   for (std::int64_t k = 0; k < found; ++k) {
     if (fresh_) {
-      put(k, memories.find(next_first_[k], next_second_[k]));
+      next_springs_.put(k, memories.find(next_first_[k], next_second_[k]));
       continue;
     }
     while (old < tight_count_ && source_[old] < next_source_[k]) ++old;
     if (old < tight_count_ && source_[old] == next_source_[k])
-      put(k, {displacement_[0][old], displacement_[1][old], displacement_[2][old]});
+      next_springs_.put(k, springs_.get(old));
     else
-      put(k, {});
+      next_springs_.put(k, {});
   }
-  for (auto k = found; k < padded; ++k) put(k, {});
+  for (auto k = found; k < padded; ++k) next_springs_.put(k, {});
   first_.swap(next_first_), second_.swap(next_second_), source_.swap(next_source_);
-  for (int a = 0; a < 3; ++a) displacement_[a].swap(next_displacement_[a]);
+  std::swap(springs_, next_springs_);
   tight_count_ = found, padded_ = padded, fresh_ = false, varied_used_ = false;
+  find_settled();
+}
+
+void PairList::find_settled() {
+  settled_before_.resize((padded_ + block - 1) / block);
+  auto lowest = std::numeric_limits<std::int64_t>::max();
+  auto k = tight_count_;
+  for (auto b = blocks(); b-- > 0;) {
+    settled_before_[b] = lowest;
+    for (; k > b * block; --k)
+      lowest = std::min<std::int64_t>(lowest, std::min(first_[k - 1], second_[k - 1]));
+  }
 }
 
 void PairList::fill_coefficients(const Rows& rows, const std::vector<Material>& materials) {
@@ -112,38 +136,24 @@ void PairList::fill_coefficients(const Rows& rows, const std::vector<Material>& 
   varied_used_ = true;
 }
 
-ContactView PairList::view() {
-  return {first_.data(),
-          second_.data(),
-          padded_,
-          {displacement_[0].data(), displacement_[1].data(), displacement_[2].data()},
-          varied_used_ ? varied_.data() : nullptr,
-          padded_};
-}
-
-void PairList::collect(const Rows& rows, bool twins, std::vector<Memory>& memories) const {
-  for (std::int64_t k = 0; k < tight_count_; ++k) {
-    const double x = displacement_[0][k], y = displacement_[1][k], z = displacement_[2][k];
-    if (is_zero(x, y, z) || (twins && first_[k] > second_[k])) continue;
-    const auto a = rows.bed_index[first_[k]], b = rows.bed_index[second_[k]];
-    if (a < b)
-      memories.push_back({a, b, {x, y, z}});
-    else
-      memories.push_back({b, a, Vec3{} - Vec3{x, y, z}});
-  }
+ContactView PairList::view(std::int64_t begin, std::int64_t end) {
+  ContactView v{first_.data() + begin, second_.data() + begin, end - begin, {}, {}, nullptr, padded_};
+  for (int a = 0; a < 3; ++a)
+    v.displacement[a] = springs_.full(a) + begin, v.rounded[a] = springs_.rounded(a) + begin;
+  if (varied_used_) v.varied = varied_.data() + begin;
+  return v;
 }
 
 std::int64_t PairList::touching_count() const {
   std::int64_t n = 0;
-  for (std::int64_t k = 0; k < tight_count_; ++k)
-    n += !is_zero(displacement_[0][k], displacement_[1][k], displacement_[2][k]);
+  for (std::int64_t k = 0; k < tight_count_; ++k) n += !(springs_.get(k) == Vec3{});
   return n;
 }
 
 std::size_t PairList::bytes() const {
   return 4 * (near_i_.capacity() + near_j_.capacity() +
               2 * (first_.capacity() + second_.capacity() + source_.capacity())) +
-         8 * (6 * displacement_[0].capacity() + varied_.capacity());
+         springs_.bytes() + next_springs_.bytes() + 8 * varied_.capacity();
 }
 
 }  // namespace granrad::native

@@ -1,11 +1,14 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "dem/native/aligned.h"
 #include "dem/native/grid.h"
 #include "dem/native/kernels.h"
 #include "dem/native/rows.h"
+#include "dem/native/spring_columns.h"
 
 namespace granrad::native {
 
@@ -30,8 +33,8 @@ class MemoryTable {
 /// only these are visited each step, and they carry the springs.
 class PairList {
  public:
-  void clear_near() { near_i_.clear(), near_j_.clear(); }
-  void add_near(std::int32_t i, std::int32_t j) { near_i_.push_back(i), near_j_.push_back(j); }
+  void clear_near() { near_i_.clear(), near_j_.clear(), backward_.clear(); }
+  void add_near(std::int32_t i, std::int32_t j);
   /// Appends the partners found[0, count) of row i; returns where to write the next ones.
   void add_near(std::int32_t i, const std::int32_t* found, std::int64_t count);
   /// Pads with the idle rows; call when all near pairs are in.
@@ -47,11 +50,24 @@ class PairList {
                const MemoryTable& memories);
   /// Fills the coefficient columns of contacts that are not all alike.
   void fill_coefficients(const Rows& rows, const std::vector<Material>& materials);
-  ContactView view();
+  ContactView view() { return view(0, padded_); }
+  /// The tight contacts in blocks, to be worked on one after the other: no row before settled_before(b) has a
+  /// contact in a block behind b.
+  std::int64_t blocks() const { return static_cast<std::int64_t>(settled_before_.size()); }
+  ContactView view_of(std::int64_t b) { return view(b * block, std::min((b + 1) * block, padded_)); }
+  std::int64_t settled_before(std::int64_t b) const { return settled_before_[b]; }
 
-  /// Appends every spring that is not zero. Of pairs that two threads keep (`twins`), only the one with the
-  /// lower row first.
-  void collect(const Rows& rows, bool twins, std::vector<Memory>& memories) const;
+  /// Calls visit(a, b, displacement) for every spring that is not zero, as Bed index a < b sees it. Of pairs
+  /// that two threads keep (`twins`), only the one with the lower row first.
+  template <class Visit>
+  void visit_springs(const Rows& rows, bool twins, Visit visit) const {
+    for (std::int64_t k = 0; k < tight_count_; ++k) {
+      const Vec3 s = springs_.get(k);
+      if (s == Vec3{} || (twins && first_[k] > second_[k])) continue;
+      const auto a = rows.bed_index[first_[k]], b = rows.bed_index[second_[k]];
+      a < b ? visit(a, b, s) : visit(b, a, Vec3{} - s);
+    }
+  }
 
   std::int64_t near_count() const { return near_count_; }
   std::int64_t tight_count() const { return tight_count_; }
@@ -62,12 +78,21 @@ class PairList {
   std::size_t bytes() const;
 
  private:
+  using RowPair = std::pair<std::int32_t, std::int32_t>;
+
   std::int64_t select(const Kernels& kernels, const RowView& rows, const StepConstants& constants);
 
+  ContactView view(std::int64_t begin, std::int64_t end);
+  void find_settled();
+
+  static constexpr std::int64_t block = 512;  ///< contacts; their rows stay in the first caches
+
   AlignedVector<std::int32_t> near_i_, near_j_;
+  std::vector<RowPair> backward_;  ///< near pairs whose first row is the higher one
   AlignedVector<std::int32_t> first_, second_, source_, next_first_, next_second_, next_source_;
-  AlignedVector<double> displacement_[3], next_displacement_[3];
+  SpringColumns springs_, next_springs_;
   AlignedVector<double> varied_;
+  std::vector<std::int64_t> settled_before_;  ///< by block
   std::int64_t near_count_ = 0, tight_count_ = 0, padded_ = 0;
   std::int32_t idle_row_ = 0;
   bool fresh_ = true;  ///< near numbers have changed: springs come from the memories

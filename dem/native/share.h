@@ -19,6 +19,14 @@ struct Share {
   double deepest = -1;
   bool too_fast = false;
 
+  /// Calls visit(a, b, displacement) for every spring kept here: Bed index a with Bed index b > a, or with
+  /// wall feature -1 - b.
+  template <class Visit>
+  void visit_springs(const Rows& rows, Visit visit) const {
+    own.visit_springs(rows, false, visit);
+    cross.visit_springs(rows, true, visit);
+    for (const auto& m : walls.collect()) visit(rows.bed_index[m.row], -1 - m.feature, m.displacement);
+  }
   bool owns(std::int64_t row) const { return row >= range.begin && row < range.end; }
 };
 

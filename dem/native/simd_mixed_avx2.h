@@ -9,6 +9,7 @@ struct Avx2Mixed {
   typedef float V __attribute__((vector_size(32)));
   using M = __m256;
   using Wide = Avx2Pack;
+  using Lane = float;
   static constexpr int halves = 2;
 
   GRANRAD_INLINE V set(double x) { return _mm256_set1_ps(static_cast<float>(x)); }
@@ -16,10 +17,8 @@ struct Avx2Mixed {
   GRANRAD_INLINE V load(const double* p) {
     return join(_mm256_cvtpd_ps(_mm256_loadu_pd(p)), _mm256_cvtpd_ps(_mm256_loadu_pd(p + 4)));
   }
-  GRANRAD_INLINE void store(double* p, V a) {
-    _mm256_storeu_pd(p, _mm256_cvtps_pd(_mm256_castps256_ps128(a)));
-    _mm256_storeu_pd(p + 4, _mm256_cvtps_pd(_mm256_extractf128_ps(a, 1)));
-  }
+  GRANRAD_INLINE V load(const float* p) { return _mm256_loadu_ps(p); }
+  GRANRAD_INLINE void store(float* p, V a) { _mm256_storeu_ps(p, a); }
   GRANRAD_INLINE V sqrt(V a) { return _mm256_sqrt_ps(a); }
   GRANRAD_INLINE V abs(V a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0f), a); }
   GRANRAD_INLINE V max(V a, V b) { return _mm256_max_ps(a, b); }
@@ -43,6 +42,10 @@ struct Avx2Mixed {
   template <class Rows>
   GRANRAD_INLINE const float* motion(const Rows& rows) {
     return rows.motion;
+  }
+  template <class Contacts>
+  GRANRAD_INLINE float* const* springs(const Contacts& c) {
+    return c.rounded;
   }
 
   /// Rows r[l] = {a, b} of eight contacts to the columns of a and of b.

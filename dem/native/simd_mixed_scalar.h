@@ -4,17 +4,19 @@
 namespace granrad::native {
 
 /// The law of a single contact in single precision: a pack for PairBodies with the operations of ScalarPack
-/// that the law needs. Columns in memory stay double; what is stored there are floats.
+/// that the law needs. Coefficients in memory are double, springs single.
 struct ScalarMixed {
   static constexpr int width = 1;
   using V = float;
   using M = bool;
   using Wide = ScalarPack;
+  using Lane = float;
   static constexpr int halves = 1;
 
   GRANRAD_INLINE V set(double x) { return static_cast<float>(x); }
   GRANRAD_INLINE V load(const double* p) { return static_cast<float>(*p); }
-  GRANRAD_INLINE void store(double* p, V a) { *p = a; }
+  GRANRAD_INLINE V load(const float* p) { return *p; }
+  GRANRAD_INLINE void store(float* p, V a) { *p = a; }
   GRANRAD_INLINE V sqrt(V a) { return __builtin_sqrtf(a); }
   GRANRAD_INLINE V abs(V a) { return __builtin_fabsf(a); }
   GRANRAD_INLINE V max(V a, V b) { return a > b ? a : b; }
@@ -33,6 +35,10 @@ struct ScalarMixed {
   template <class Rows>
   GRANRAD_INLINE const float* motion(const Rows& rows) {
     return rows.motion;
+  }
+  template <class Contacts>
+  GRANRAD_INLINE float* const* springs(const Contacts& c) {
+    return c.rounded;
   }
   GRANRAD_INLINE void pair_velocities(const float* rows, const std::int32_t* i, const std::int32_t* j, V u[3],
                                       V w[3]) {

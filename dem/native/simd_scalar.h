@@ -11,6 +11,7 @@ namespace granrad::native {
 template <class Pack>
 struct LawInDouble {
   using Wide = Pack;
+  using Lane = double;
   static constexpr int halves = 1;
   template <class V>
   GRANRAD_INLINE V narrow(const V a[1]) {
@@ -27,6 +28,10 @@ struct LawInDouble {
   template <class Rows>
   GRANRAD_INLINE const double* motion(const Rows& rows) {
     return rows.velocity;
+  }
+  template <class Contacts>
+  GRANRAD_INLINE double* const* springs(const Contacts& c) {
+    return c.displacement;
   }
 };
 
