@@ -18,7 +18,9 @@ void Grid::fit(const Rows& rows, const Periods& periods, const Box& box, double 
   }
   const Vec3 extent = high - low;
   axis_[0] = 0, axis_[1] = 1, axis_[2] = 2;
-  std::sort(axis_, axis_ + 3, [&](int a, int b) { return extent[a] > extent[b]; });
+  // Around a period threads meet at two faces.
+  const auto worth = [&](int a) { return periods.length[a] > 0 ? 0.5 * extent[a] : extent[a]; };
+  std::sort(axis_, axis_ + 3, [&](int a, int b) { return worth(a) > worth(b); });
   for (double size = cell_m;;
        size *= 1.26) {  // far outliers: coarser cells, never more than a few per particle
     double cells = 1;

@@ -7,8 +7,9 @@
 
 namespace granrad::native {
 
-/// Cells of at least `cell_m` over the particles, the longest direction slowest, so that a cut between
-/// threads is a small face. Sorting the rows by cell makes the particles of a column segment contiguous.
+/// Cells of at least `cell_m` over the particles, the longest direction slowest (a period counts half), so
+/// that threads meet at small faces. Sorting the rows by cell makes the particles of a column segment
+/// contiguous.
 class Grid {
  public:
   /// Order of the rows (row -> old row) that sorts them by cell.
