@@ -117,8 +117,9 @@ void print_limits(const Simulation& simulation) {
     fmt::print("  radiation update            {}   largest allowed {}; following the motion asks {}\n",
                seconds(plan.tick_s * static_cast<double>(plan.ticks_per_radiation)),
                seconds(limits.radiation_s), seconds(limits.motion_s));
-  fmt::print("  {} DEM steps per heat step, {} heat steps in {}\n", plan.steps_per_tick, plan.end_tick,
-             seconds(plan.time_s(plan.end_tick)));
+  if (std::isfinite(limits.dem_s)) fmt::print("  {} DEM steps per heat step\n", plan.steps_per_tick);
+  fmt::print("  {} heat steps in {}{}\n", plan.end_tick, seconds(plan.time_s(plan.end_tick)),
+             plan.cuts(plan.end_tick) ? ", the last one cut short" : "");
 }
 
 }  // namespace
@@ -136,6 +137,8 @@ int check_case(const Case& c, const RunOptions& options) {
   fmt::print("left out\n");
   for (const auto& text : verdict.left_out) fmt::print("  {}\n", text);
   print_limits(simulation);
+  if (const auto note = end_note(simulation.plan(), c.flow.end_time_s); !note.empty())
+    fmt::print("  note: {}\n", note);
   fmt::print("\n{} particles at time 0, solid fraction {:.4f} in the region\n", simulation.bed().size(),
              solid_fraction(simulation.bed(), c.flow.region));
   return exit_ok;

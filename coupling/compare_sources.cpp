@@ -77,7 +77,7 @@ SourceTrack heat_frozen_bed(const Case& c, const Bed& bed, const RadiationSettin
   track.label = source_label(radiation);
   track.rays = radiation.kind == RadiationKind::correlation ? 0 : radiation.rays;
   for (double time : times_s) {
-    while (simulation.bed().time_s < time * (1 - 1e-9)) {
+    while (simulation.bed().time_s < time * (1 - 1e-9) && !simulation.finished()) {
       simulation.advance();
       if (simulation.tick() == 1) track.seconds_per_update = simulation.seconds().radiation;
       track.curve_time_s.push_back(simulation.bed().time_s);

@@ -34,7 +34,7 @@ void Flow::load(const StateBlock& state) {
 }
 
 void Flow::advance(Bed& bed, const TimePlan& plan, std::int64_t tick) {
-  const std::int64_t last_step = tick * plan.steps_per_tick;
+  const std::int64_t last_step = plan.step_at(tick);
   if (!moves()) {
     bed.step = last_step;
     bed.time_s = plan.time_s(tick);

@@ -17,12 +17,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// The last frame that can be read; a damaged one is reported and passed over.
+/// The last frame that can be read and leads on; a damaged one is reported and passed over.
 bool resume_from_last_frame(Simulation& simulation, const CaseFolder& folder, const RunOptions& options) {
   const auto frames = folder.frames();
   for (auto frame = frames.rbegin(); frame != frames.rend(); ++frame) {
     try {
-      simulation.resume(read_frame(frame->file));
+      if (!simulation.resume(read_frame(frame->file))) continue;
       if (!options.quiet())
         fmt::print(stderr, "resumed from {} at {:g} s\n", frame->file.string(), simulation.bed().time_s);
       return true;
@@ -40,6 +40,11 @@ void warn_about_motion(const Case& c, const Simulation& simulation) {
                "{:g} s); "
                "{:.2g} s follows the flow\n",
                c.heat.radiation.every_s, simulation.limits().motion_s);
+}
+
+void warn_about_end(const Case& c, const Simulation& simulation) {
+  const auto note = end_note(simulation.plan(), c.flow.end_time_s);
+  if (!note.empty()) fmt::print(stderr, "note: {}\n", note);
 }
 
 std::string progress_detail(const Simulation& simulation, const HistoryRow& row) {
@@ -71,6 +76,7 @@ int run_case(const Case& c, const std::filesystem::path& where, const RunOptions
     simulation.start();
     if (!options.quiet()) warn_about_motion(c, simulation);
   }
+  if (!options.quiet()) warn_about_end(c, simulation);
   const CaseFolder folder = CaseFolder::prepare(where, c, options.resume);
   write_run_record(folder, c, simulation);
   HistoryWriter history(folder.history(), simulation.bed().time_s);
@@ -80,6 +86,7 @@ int run_case(const Case& c, const std::filesystem::path& where, const RunOptions
   Progress progress(c.flow.name, plan.time_s(plan.end_tick), options.quiet());
   HistoryRow row;
   while (!simulation.finished()) {
+    if (plan.cuts(simulation.tick() + 1)) save(simulation, folder);  // where a longer run goes on
     simulation.advance();
     if (plan.row_at(simulation.tick())) history.append(row = simulation.row());
     const int stop = stop_requested(options, begin);

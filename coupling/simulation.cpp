@@ -43,10 +43,12 @@ void Simulation::start(Bed bed) {
   recorder_.start(bed_);
 }
 
-void Simulation::resume(const Snapshot& frame) {
+bool Simulation::resume(const Snapshot& frame) {
   try {
+    const auto plan = TimePlan::restored(frame.state.at("plan"), case_.flow.end_time_s);
+    if (frame.bed.step % plan.steps_per_tick != 0 && frame.bed.step < plan.end_step) return false;
     bed_ = frame.bed;
-    plan_ = TimePlan::restored(frame.state.at("plan"), case_.flow.end_time_s);
+    plan_ = plan;
     flow_.load(frame.state.at("feed"));
     heat_.load(frame.state.at("radiation"), frame.state.at("ledger"));
     recorder_.load(frame.state.at("recorder"));
@@ -55,6 +57,7 @@ void Simulation::resume(const Snapshot& frame) {
         "{} (a frame without the state of a run: it cannot be resumed) start a new case", frame.origin));
   }
   tick_ = bed_.step / plan_.steps_per_tick;
+  return true;
 }
 
 void Simulation::advance() {
@@ -72,7 +75,7 @@ void Simulation::advance() {
     heat_.radiate(bed_);
   }
   Stopwatch watch(seconds_.conduction);
-  heat_.advance(bed_, plan_.tick_s);
+  heat_.advance(bed_, plan_.heat_step_s(tick_));
 }
 
 void Simulation::write_checkpoint(const std::filesystem::path& file) const {

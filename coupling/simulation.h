@@ -21,15 +21,16 @@ class Simulation {
   /// Time 0: fills the bed, checks every limit. Throws InputError with every step that is too long.
   void start() { start(flow_.first_bed()); }
   void start(Bed bed);  ///< from a bed made elsewhere
-  /// Goes on from a frame, bit for bit. Throws InputError when the frame lacks something.
-  void resume(const Snapshot& frame);
+  /// Goes on from a frame, bit for bit. False, and nothing is done, where the end of a shorter run cut the
+  /// frame's last heat step: a frame before it leads on. Throws InputError when the frame lacks something.
+  bool resume(const Snapshot& frame);
 
   /// One tick: move, conduct, radiate when due, heat.
   void advance();
   HistoryRow row() { return recorder_.row(bed_, flow_, heat_); }
   void write_checkpoint(const std::filesystem::path& file) const;
 
-  bool finished() const { return tick_ >= plan_.end_tick; }
+  bool finished() const { return bed_.step >= plan_.end_step; }
   std::int64_t tick() const { return tick_; }
   const Bed& bed() const { return bed_; }
   const TimePlan& plan() const { return plan_; }

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::int64_t usual_steps_per_tick =
     100;  // contacts last hundreds of steps; conduction is slower still
-constexpr double whole_number_tolerance = 1e-6;  // decimal input: 0.01 / 1e-5 is a whole number
+constexpr std::int64_t parts_of_a_frozen_tick = 1000;  // a decimal end falls on one of them
+constexpr double whole_number_tolerance = 1e-6;        // decimal input: 0.01 / 1e-5 is a whole number
 
 struct Interval {
   const char* key;
@@ -71,6 +72,7 @@ void refuse_beyond(std::vector<std::string>& problems, const char* key, double v
         fmt::format("{} = {:g} s ({}) the largest allowed value is {:.4g} s", key, value, why, limit));
 }
 
+/// The DEM step, or the heat step of a frozen bed.
 double choose_step(const Case& c, const StepLimits& limits, double conduction_limit_s,
                    std::vector<std::string>& problems) {
   const double base = shortest(intervals(c));
@@ -101,8 +103,9 @@ std::int64_t choose_steps_per_tick(const Case& c, std::int64_t divisor, double s
   return wanted;
 }
 
-std::int64_t last_tick(double end_time_s, double tick_s) {
-  return static_cast<std::int64_t>(std::ceil(end_time_s / tick_s * (1 - whole_number_tolerance)));
+void end_at(TimePlan& plan, double end_time_s) {
+  plan.end_step = std::max<std::int64_t>(1, std::llround(end_time_s / plan.step_s));
+  plan.end_tick = (plan.end_step + plan.steps_per_tick - 1) / plan.steps_per_tick;
 }
 
 }  // namespace
@@ -124,12 +127,25 @@ TimePlan make_time_plan(const Case& c, const StepLimits& limits, double conducti
   plan.steps_per_tick = choose_steps_per_tick(c, divisor, plan.step_s, conduction_limit_s, problems);
   if (!problems.empty()) throw InputError(problems);
 
-  plan.tick_s = static_cast<double>(plan.steps_per_tick) * plan.step_s;
   plan.ticks_per_frame = steps.back() / plan.steps_per_tick;
   plan.ticks_per_row = steps[steps.size() - 2] / plan.steps_per_tick;
   if (steps.size() == 3) plan.ticks_per_radiation = steps.front() / plan.steps_per_tick;
-  plan.end_tick = last_tick(c.flow.end_time_s, plan.tick_s);
+  if (c.flow.engine == EngineKind::none) {
+    plan.steps_per_tick = parts_of_a_frozen_tick;
+    plan.step_s /= static_cast<double>(parts_of_a_frozen_tick);
+  }
+  plan.tick_s = static_cast<double>(plan.steps_per_tick) * plan.step_s;
+  end_at(plan, c.flow.end_time_s);
   return plan;
+}
+
+std::string end_note(const TimePlan& plan, double end_time_s) {
+  const double ends_s = plan.time_s(plan.end_tick);
+  constexpr double rounding = 1e-3;  // of a step: decimal times are not whole numbers of decimal steps
+  if (std::abs(ends_s - end_time_s) <= rounding * plan.step_s) return "";
+  return fmt::format(
+      "scene.end_time_s = {:.12g} s (not a whole number of steps of {:.9g} s): the run ends at {:.12g} s",
+      end_time_s, plan.step_s, ends_s);
 }
 
 StateBlock TimePlan::save() const {
@@ -149,7 +165,7 @@ TimePlan TimePlan::restored(const StateBlock& block, double end_time_s) {
   plan.ticks_per_radiation = ticks_per.at(0);
   plan.ticks_per_row = ticks_per.at(1);
   plan.ticks_per_frame = ticks_per.at(2);
-  plan.end_tick = last_tick(end_time_s, plan.tick_s);
+  end_at(plan, end_time_s);
   return plan;
 }
 

@@ -135,4 +135,11 @@ inline fs::path last_frame(const fs::path& folder) {
   return last;
 }
 
+/// Frames are compared byte by byte: the writer puts no clock into them.
+inline void expect_same_case(const fs::path& a, const fs::path& b) {
+  EXPECT_EQ(last_frame(a).filename(), last_frame(b).filename());
+  EXPECT_TRUE(content(last_frame(a)) == content(last_frame(b))) << a << " and " << b << " end differently";
+  EXPECT_EQ(content(a / "history.csv"), content(b / "history.csv"));
+}
+
 }  // namespace granrad::cli

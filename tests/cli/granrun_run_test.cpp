@@ -19,13 +19,6 @@ const char* contract_header =
     "sfs_W,"
     "Q_rad_W,h_ss_W_m2K,h_sfs_W_m2K,h_rad_W_m2K,h_wp_W_m2K,Nu_d,energy_defect,";
 
-/// Frames are compared byte by byte: the writer puts no clock into them.
-void expect_same_case(const fs::path& a, const fs::path& b) {
-  EXPECT_EQ(last_frame(a).filename(), last_frame(b).filename());
-  EXPECT_TRUE(content(last_frame(a)) == content(last_frame(b))) << a << " and " << b << " end differently";
-  EXPECT_EQ(content(a / "history.csv"), content(b / "history.csv"));
-}
-
 }  // namespace
 
 TEST(GranrunRun, SmallPlugEndToEnd) {

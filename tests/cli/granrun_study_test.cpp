@@ -102,9 +102,9 @@ TEST(GranrunExport, FramesReachOtherTools) {
   ASSERT_EQ(granrun(scratch, "run " + scene + " -q -o " + folder.string()).code, 0);
   ASSERT_EQ(granrun(scratch, "export " + folder.string() + " --to dump").code, 0);
   ASSERT_EQ(granrun(scratch, "export " + folder.string() + " --to vtp").code, 0);
-  const auto dump = content(folder / "export" / "f_000000020.dump");
+  const auto dump = content(folder / "export" / "f_000020000.dump");
   EXPECT_NE(dump.find("ITEM: ATOMS id type x y z radius"), std::string::npos);
-  EXPECT_NE(content(folder / "export" / "f_000000020.vtp").find("<VTKFile type=\"PolyData\""),
+  EXPECT_NE(content(folder / "export" / "f_000020000.vtp").find("<VTKFile type=\"PolyData\""),
             std::string::npos);
   // What was exported can start a scene again.
   const auto again =
@@ -115,7 +115,7 @@ TEST(GranrunExport, FramesReachOtherTools) {
                                "transverse_velocity_std_m_s = 0.02\nseed = 3\n",
                                ""),
                         "temperature_K = 300\n",
-                        "temperature_K = 300\nfile = \"case/export/f_000000020.dump\"\n"))
+                        "temperature_K = 300\nfile = \"case/export/f_000020000.dump\"\n"))
           .string();
   const auto outcome = granrun(scratch, "check " + again);
   EXPECT_EQ(outcome.code, 0) << outcome.err;
