@@ -2,9 +2,11 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 #include "coupling/case_folder.h"
@@ -23,10 +25,17 @@ std::string header() {
 }
 
 std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> cells;
-  std::stringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+  std::vector<std::string> cells(1);
+  for (const char c : line)
+    if (c == ',')
+      cells.emplace_back();
+    else
+      cells.back() += c;
   return cells;
+}
+
+double number(const std::string& cell) {
+  return cell.empty() ? std::numeric_limits<double>::quiet_NaN() : std::strtod(cell.c_str(), nullptr);
 }
 
 /// The rows whose time is not after `time_s`; a row cut short by a crash is dropped.
@@ -43,6 +52,10 @@ std::string rows_up_to(const std::string& text, double time_s) {
 }
 
 }  // namespace
+
+std::string cell(double value, int digits) {
+  return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "";
+}
 
 const std::vector<HistoryColumn>& history_columns() {
   using R = HistoryRow;
@@ -84,8 +97,10 @@ HistoryWriter::HistoryWriter(const std::filesystem::path& file, double resume_af
 
 void HistoryWriter::append(const HistoryRow& row) {
   std::string line;
-  for (const auto& column : history_columns())
-    line += fmt::format("{}{:.12g}", line.empty() ? "" : ",", row.*column.value);
+  for (const auto& column : history_columns()) {
+    if (!line.empty()) line += ',';
+    line += cell(row.*column.value);
+  }
   line += "\n";
   std::FILE* out = std::fopen(file_.c_str(), "ab");
   if (!out) throw IoError(fmt::format("{}: cannot be written", file_.string()));
@@ -105,8 +120,7 @@ History read_history(const std::filesystem::path& file) {
   while (std::getline(text, line)) {
     const auto cells = split(line);
     if (cells.size() != names.size()) continue;  // a row being written now
-    for (std::size_t k = 0; k < names.size(); ++k)
-      history[names[k]].push_back(std::strtod(cells[k].c_str(), nullptr));
+    for (std::size_t k = 0; k < names.size(); ++k) history[names[k]].push_back(number(cells[k]));
   }
   return history;
 }

@@ -7,7 +7,8 @@
 namespace granrad {
 
 /// One row of history.csv. Flows and heats are means over the interval since the row before, the rest is the
-/// state at time_s. Coefficients are nan where they are not defined (no isothermal wall, nothing moves).
+/// state at time_s. What has no value (no particle in the region, no isothermal wall, nothing moves) is nan
+/// here and an empty cell in the file.
 struct HistoryRow {
   double time_s = 0, particle_count = 0, solid_fraction = 0, mean_temperature_K = 0;
   double mass_flow_in_kg_s = 0, mass_flow_out_kg_s = 0;
@@ -18,6 +19,10 @@ struct HistoryRow {
   double region_particle_count = 0, mean_velocity_m_s = 0, outlet_temperature_K = 0, Pe_L = 0, Pe_d_star = 0;
   double coordination_number = 0, residence_time_s = 0;
 };
+
+/// A cell of a table of numbers: empty where there is no value, which pandas and spreadsheets read as
+/// missing.
+std::string cell(double value, int digits = 12);
 
 /// The columns in file order: the contract's fifteen, then ours.
 struct HistoryColumn {
@@ -38,7 +43,8 @@ class HistoryWriter {
   std::filesystem::path file_;
 };
 
-/// A history read back: columns by name. Throws IoError, InputError (not a history).
+/// A history read back: columns by name, nan where a cell is empty. Throws IoError, InputError (not a
+/// history).
 using History = std::map<std::string, std::vector<double>>;
 History read_history(const std::filesystem::path& file);
 

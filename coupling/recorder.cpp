@@ -23,19 +23,26 @@ double coordination_number(const Bed& bed, const NearPairs& pairs, const std::ve
 }
 
 struct RegionState {
-  double count = 0, mass_kg = 0, mean_velocity_m_s = 0;  ///< velocity: downwards
+  double count = 0, mass_kg = 0, mean_velocity_m_s = undefined;  ///< velocity: downwards
 };
 
 RegionState region_state(const Bed& bed, const std::vector<char>& inside) {
   RegionState state;
+  double velocities = 0;
   for (std::size_t i = 0; i < bed.size(); ++i) {
     if (!inside[i]) continue;
     state.count += 1;
     state.mass_kg += mass_kg(bed, i);
-    state.mean_velocity_m_s -= bed.velocity_m_s[i].z;
+    velocities -= bed.velocity_m_s[i].z;
   }
-  if (state.count > 0) state.mean_velocity_m_s /= state.count;
+  if (state.count > 0) state.mean_velocity_m_s = velocities / state.count;
   return state;
+}
+
+/// Mean of the temperatures at both ends of an interval; of the one known where the region was empty (0 K).
+double interval_temperature_K(double before, double now) {
+  if (before > 0 && now > 0) return (before + now) / 2;
+  return before + now > 0 ? before + now : undefined;
 }
 
 double mean_diameter_m(const Bed& bed, double fallback) {
@@ -48,8 +55,9 @@ double mean_diameter_m(const Bed& bed, double fallback) {
 void fill_coefficients(HistoryRow& row, const Case& c, const Bed& bed, double mean_temperature_K) {
   const double diameter = mean_diameter_m(bed, c.flow.particle_diameter_m);
   const double gas = c.heat.conduction.gas ? c.heat.conduction.gas->conductivity_W_mK : 0;
-  const auto found =
-      wall_coefficients(bed, {row.Q_ss_W, row.Q_sfs_W, row.Q_rad_W}, mean_temperature_K, diameter, gas);
+  std::optional<WallCoefficients> found;
+  if (std::isfinite(mean_temperature_K))
+    found = wall_coefficients(bed, {row.Q_ss_W, row.Q_sfs_W, row.Q_rad_W}, mean_temperature_K, diameter, gas);
   row.h_ss_W_m2K = found ? found->h_W_m2K.solid : undefined;
   row.h_sfs_W_m2K = found ? found->h_W_m2K.gas : undefined;
   row.h_rad_W_m2K = found ? found->h_W_m2K.radiation : undefined;
@@ -95,7 +103,7 @@ HistoryRow Recorder::row(const Bed& bed, Flow& flow, const HeatModel& heat) {
   row.time_s = now.time_s;
   row.particle_count = static_cast<double>(bed.size());
   row.solid_fraction = solid_fraction(bed, case_.flow.region);
-  row.mean_temperature_K = now.mean_temperature_K;
+  row.mean_temperature_K = region.count > 0 ? now.mean_temperature_K : undefined;
   row.mass_flow_in_kg_s = (now.mass_in_kg - before_.mass_in_kg) / interval;
   row.mass_flow_out_kg_s = (now.mass_out_kg - before_.mass_out_kg) / interval;
   row.Q_ss_W = (now.received_J.solid - before_.received_J.solid) / interval;
@@ -117,7 +125,8 @@ HistoryRow Recorder::row(const Bed& bed, Flow& flow, const HeatModel& heat) {
                                           : undefined;
   row.residence_time_s = row.mass_flow_out_kg_s > 0 ? region.mass_kg / row.mass_flow_out_kg_s : undefined;
   row.coordination_number = coordination_number(bed, flow.near_pairs(bed, 0), inside, region.count);
-  fill_coefficients(row, case_, bed, (now.mean_temperature_K + before_.mean_temperature_K) / 2);
+  fill_coefficients(row, case_, bed,
+                    interval_temperature_K(before_.mean_temperature_K, now.mean_temperature_K));
   before_ = now;
   return row;
 }

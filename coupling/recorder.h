@@ -19,7 +19,7 @@ class Recorder {
  private:
   /// Totals at the row before.
   struct Mark {
-    double time_s = 0, mean_temperature_K = 0;
+    double time_s = 0, mean_temperature_K = 0;  ///< 0: no particle in the region
     double mass_in_kg = 0, mass_out_kg = 0, heat_out_J = 0;
     HeatPaths received_J;
     double error_squared_W2 = 0, updates = 0;

@@ -103,8 +103,9 @@ void print_results(const Case& c, const Results& results, const Simulation& simu
     line("Peclet number Pe_L", of.at("Pe_L"), "");
   }
   line("contacts per particle", of.at("coordination_number"), "");
-  fmt::print("  at the end: {} particles, {:.2f} K in the region\n", simulation.bed().size(),
-             results.final_mean_temperature_K);
+  const double final_K = results.final_mean_temperature_K;
+  fmt::print("  at the end: {} particles, {} in the region\n", simulation.bed().size(),
+             std::isfinite(final_K) ? fmt::format("{:.2f} K", final_K) : "none");
   fmt::print("  energy: |stored - received| / received = {:.1e} at most\n", results.largest_energy_defect);
   print_seconds(simulation.seconds());
   fmt::print("  history {}   frames {}\n", folder.history().string(),

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <chrono>
+#include <cmath>
 
 #include "coupling/case_folder.h"
 #include "coupling/results.h"
@@ -48,8 +49,10 @@ void warn_about_end(const Case& c, const Simulation& simulation) {
 }
 
 std::string progress_detail(const Simulation& simulation, const HistoryRow& row) {
-  return fmt::format("t = {:.4g} s  N = {}  T = {:.1f} K  h = {:.1f} W/m2K", simulation.bed().time_s,
-                     simulation.bed().size(), row.mean_temperature_K, row.h_wp_W_m2K);
+  std::string text = fmt::format("t = {:.4g} s  N = {}", simulation.bed().time_s, simulation.bed().size());
+  if (row.mean_temperature_K > 0) text += fmt::format("  T = {:.1f} K", row.mean_temperature_K);
+  if (std::isfinite(row.h_wp_W_m2K)) text += fmt::format("  h = {:.1f} W/m2K", row.h_wp_W_m2K);
+  return text;
 }
 
 void save(const Simulation& simulation, const CaseFolder& folder) {

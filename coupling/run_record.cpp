@@ -18,7 +18,8 @@ nlohmann::ordered_json as_json(const Results& results) {
   json["from_s"] = results.from_s;
   json["to_s"] = results.to_s;
   json["largest_energy_defect"] = results.largest_energy_defect;
-  json["final_mean_temperature_K"] = results.final_mean_temperature_K;
+  if (std::isfinite(results.final_mean_temperature_K))
+    json["final_mean_temperature_K"] = results.final_mean_temperature_K;
   for (const auto& column : history_columns()) {
     const auto& average = results.column.at(column.name);
     if (std::isfinite(average.mean)) json["means"][column.name] = average.mean;

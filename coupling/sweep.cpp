@@ -96,7 +96,10 @@ void write_summary(const Sweep& sweep, const fs::path& folder) {
       overrides += fmt::format("{}{}", overrides.empty() ? "" : " ", override_text);
     text += fmt::format("{},\"{}\",{}", one.name, overrides, finished ? 1 : 0);
     const Results results = finished ? summarise(read_history(folder / one.name / "history.csv")) : Results{};
-    for (const auto& column : history_columns()) text += fmt::format(",{:.9g}", results.mean(column.name));
+    for (const auto& column : history_columns()) {
+      text += ',';
+      text += cell(results.mean(column.name), 9);
+    }
     text += "\n";
   }
   write_text_file(folder / "sweep.csv", text);
