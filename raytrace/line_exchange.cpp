@@ -136,18 +136,25 @@ double relative_sum_error(const SymmetricCounts& counts, std::size_t spheres,
 
 Sweep sweep_to_target(const LineScene& scene, const LineOptions& options, const StatedQuantity& quantity,
                       LineReport* report) {
-  int directions = options.directions, rounds = 0;
+  int directions = options.directions;
+  std::vector<LineRound> rounds;
   std::int64_t ends = 0;
   for (;;) {
     Sweep result = sweep(scene, options, directions);
-    ++rounds;
     ends += result.ends;
     const double error = relative_sum_error(result.counts, scene.x.size(), quantity);
+    rounds.push_back({directions, error});
     if (options.target_error <= 0 || error <= options.target_error) {
-      if (report) *report = {ends, directions, scene.spacing, error, result.counts.thinning_unit, rounds};
+      if (report)
+        *report = {ends,
+                   directions,
+                   scene.spacing,
+                   error,
+                   result.counts.thinning_unit,
+                   static_cast<int>(rounds.size())};
       return result;
     }
-    directions = more_directions(directions, error, options.target_error);
+    directions = more_directions(rounds, options);
   }
 }
 

@@ -117,6 +117,7 @@ std::vector<double> sweep_black_heat(const Enclosure& enclosure,
     throw InputError(fmt::format("lines: {} emissive powers (need {} finite values, one per surface)",
                                  emissive_power_W_m2.size(), scene.surface_count()));
   const FixedPoint fixed(emissive_power_W_m2);
+  std::vector<LineRound> rounds;
   for (int directions = options.directions;;) {
     const auto total = sweep(scene, fixed.power, options, directions);
     check_balance(total);
@@ -127,7 +128,8 @@ std::vector<double> sweep_black_heat(const Enclosure& enclosure,
       if (standard_error_W) *standard_error_W = std::move(e.error);
       return std::move(e.heat);
     }
-    directions = more_directions(directions, error, options.target_error);
+    rounds.push_back({directions, error});
+    directions = more_directions(rounds, options);
   }
 }
 

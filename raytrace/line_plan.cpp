@@ -10,6 +10,21 @@
 
 namespace granrad {
 
+namespace {
+
+constexpr double most_directions = 1 << 24;
+
+/// The power of the number of directions with which the error falls.
+double falling_power(const std::vector<LineRound>& rounds) {
+  if (rounds.size() < 2) return 1;
+  const LineRound &before = rounds[rounds.size() - 2], &last = rounds.back();
+  const double power = std::log(before.error / last.error) /
+                       std::log(static_cast<double>(last.directions) / before.directions);
+  return std::clamp(power, 0.5, 1.0);
+}
+
+}  // namespace
+
 void check_line_options(const LineOptions& options) {
   std::vector<std::string> problems;
   if (options.directions < 1)
@@ -28,13 +43,20 @@ int line_threads(int asked) {
   return asked > 0 ? asked : omp_get_max_threads();
 }
 
-int more_directions(int directions, double error, double target) {
-  const double factor = std::clamp(1.1 * (error / target) * (error / target), 1.3, 4.0);
-  const double wanted = std::ceil(directions * factor);
-  if (wanted > 16777216)
-    throw ThresholdMissed(fmt::format("lines: error {:.3g} after {} directions, {} asked for: out of reach",
-                                      error, directions, target));
-  return static_cast<int>(wanted);
+int more_directions(const std::vector<LineRound>& rounds, const LineOptions& options) {
+  const auto [directions, error] = rounds.back();
+  const double ratio = error / options.target_error, power = falling_power(rounds);
+  const double foreseen = directions * std::pow(ratio, 1 / power);
+  if (foreseen > most_directions) {
+    const double rays_each = 2 * options.lines_per_disc * options.replicates;
+    throw ThresholdMissed(fmt::format(
+        "error = {:.3g} (reached {:.3g} with {:.2g} rays per particle; would need about {:.2g}; the most are "
+        "{:.2g}, for about {:.2g}) ask for less",
+        options.target_error, error, directions * rays_each, foreseen * rays_each,
+        most_directions * rays_each, error * std::pow(directions / most_directions, power)));
+  }
+  return static_cast<int>(
+      std::min(most_directions, std::ceil(directions * std::clamp(1.1 * ratio * ratio, 1.3, 4.0))));
 }
 
 }  // namespace granrad

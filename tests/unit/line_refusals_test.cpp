@@ -6,6 +6,7 @@
 
 #include "dem/scene/error.h"
 #include "raytrace/line_kernel.h"
+#include "raytrace/line_plan.h"
 #include "tests/line_cases.h"
 
 namespace granrad {
@@ -75,6 +76,31 @@ TEST(LineRefusals, UnknownInstructionSet) {
   setenv("GRANRAD_SIMD", "mmx", 1);
   EXPECT_THROW(line_kernels(), InputError);
   unsetenv("GRANRAD_SIMD");
+}
+
+/// Directions for the next round after errors found, or the words of the refusal.
+std::string next_round(double target, const std::vector<LineRound>& rounds) {
+  LineOptions options;
+  options.target_error = target;
+  try {
+    return std::to_string(more_directions(rounds, options));
+  } catch (const ThresholdMissed& refused) {
+    return refused.what();
+  }
+}
+
+// 2^24 = 16 x 4^10 directions: a thousandth of the error of 16 by the power 1/2, a millionth by the power 1.
+TEST(LineRefusals, ErrorsOutOfReachAreForeseenFromTheFallSoFar) {
+  EXPECT_EQ(next_round(1e-2, {{16, 0.02}}), "64");
+  EXPECT_EQ(next_round(1.8e-2, {{16, 0.02}}), "22");
+  EXPECT_EQ(next_round(3e-8, {{16, 0.02}}), "64");  // evenly spread directions could
+  EXPECT_TRUE(mentions(next_round(1e-8, {{16, 0.02}}), "ask for less"));
+  // The error halved for four times as many: as with random directions.
+  EXPECT_EQ(next_round(2.1e-5, {{16, 0.02}, {64, 0.01}}), "256");
+  EXPECT_TRUE(mentions(next_round(1.9e-5, {{16, 0.02}, {64, 0.01}}), "for about 2e-05"));
+  // A lucky or unlucky round is not taken at its word.
+  EXPECT_EQ(next_round(2.1e-5, {{16, 0.01}, {64, 0.01}}), "256");
+  EXPECT_TRUE(mentions(next_round(1e-9, {{16, 0.02}, {64, 0.001}}), "ask for less"));
 }
 
 }  // namespace
