@@ -11,6 +11,7 @@
 #include "dem/scene/error.h"
 #include "dem/scene/import_stl.h"
 #include "dem/scene/snapshot.h"
+#include "fit/overlaps.h"
 #include "raytrace/line_sweep.h"
 #include "raytrace/mesh_check.h"
 
@@ -152,6 +153,20 @@ void restore_file_order(Enclosure& enclosure, const std::vector<std::size_t>& fi
   }
 }
 
+/// A warning about deep overlaps. Throws InputError for particles in the same place.
+std::string check_overlaps(const Bed& bed, const Enclosure& enclosure, const std::string& file) {
+  const Overlaps overlaps = find_overlaps(bed, enclosure.particle);
+  if (overlaps.same_place.count > 0)
+    throw InputError(
+        fmt::format("{}: {} are in the same place (each hides the other from every ray) keep one of each",
+                    file, describe(bed, overlaps.same_place, overlaps.all)));
+  if (overlaps.deep.count == 0) return "";
+  return fmt::format(
+      "warning: {}: {} overlap by more than half a radius (no packing does: check the radius, the unit of "
+      "length, and for particles given twice)",
+      file, describe(bed, overlaps.deep, overlaps.all));
+}
+
 }  // namespace
 
 const char* to_string(TraceMethod method) {
@@ -189,6 +204,7 @@ SnapshotEnclosure read_enclosure(const std::filesystem::path& snapshot, const En
   }
   if (settings.box) add_box(bed, *settings.box);
   result.enclosure = make_enclosure(bed, settings.box || own_walls ? bed.box : unbounded());
+  result.overlaps = check_overlaps(bed, result.enclosure, snapshot.string());
   restore_file_order(result.enclosure, read.file_row);
   result.left_out = bed.size() - result.enclosure.sphere_count();
   return result;

@@ -41,12 +41,14 @@ struct SnapshotEnclosure {
   Enclosure enclosure;
   std::size_t left_out = 0;  ///< particles with their centre outside the box
   std::string meshes;        ///< how the triangles of the STL fit together; empty without one
+  std::string overlaps;      ///< the pairs that overlap by more than half a radius; empty without any
 };
 
 /// "X,Y,Z" or "X,Y,Z:x0,y0,z0" in metres. Throws InputError.
 Box parse_box(const std::string& text);
 
-/// Reads a snapshot and gives it its walls: its own, those of `stl`, and the box. Throws InputError, IoError.
+/// Reads a snapshot and gives it its walls: its own, those of `stl`, and the box. Throws InputError
+/// (two particles in the same place among others), IoError.
 SnapshotEnclosure read_enclosure(const std::filesystem::path& snapshot, const EnclosureSettings& settings);
 
 /// Traces, closes (reciprocal) and checks; the caller decides what a failed check means. Throws InputError

@@ -81,6 +81,7 @@ int run_trace(const TraceCommand& command, Verbosity verbosity) {
     if (read.left_out > 0)
       fmt::print(stderr, "{}: {} particles with their centre outside the box were left out\n",
                  snapshot.string(), read.left_out);
+    if (!read.overlaps.empty()) fmt::print(stderr, "{}\n", read.overlaps);
     if (!read.meshes.empty() && !verbosity.quiet()) fmt::print(stderr, "{}\n", read.meshes);
     const auto traced = trace_shown(read.enclosure, command.trace, snapshot.string(), verbosity.quiet());
     const auto file = numbered(command.output, k + 1, command.snapshots.size());

@@ -379,6 +379,39 @@ TEST_F(Vfgen, BoxEndsThePeriodsOfADump) {
   EXPECT_EQ(enclosure.periodic, (std::array<bool, 3>{}));
 }
 
+// Planted: pairs of one size class alone, no periodic image, depth measured by the larger radius.
+TEST_F(Vfgen, RemarksOnGrossOverlaps) {
+  const auto tracing = [&](const std::string& file, const std::string& text) {
+    return vfgen("trace " + write(file, text) + " --rays 10 -o " + path("x.h5"));
+  };
+  const std::string first = "x,y,z,radius\n0,0,0,1\n", far = "9,9,9,1\n";
+  const auto deep = tracing("deep.csv", first + far + "1.4,0,0,1\n");
+  expect_says(deep, 0, "deep.csv: 1 pair of particles, ids 1-3 overlap by more than half a radius");
+  EXPECT_EQ(tracing("less.csv", first + far + "1.6,0,0,1\n").text.find("overlap"), std::string::npos);
+  expect_says(tracing("small.csv", first + "1,0,0,0.1\n"), 0, "ids 1-2 overlap");
+  EXPECT_EQ(tracing("poking.csv", first + "1.06,0,0,0.1\n").text.find("overlap"), std::string::npos);
+  std::string row = "x,y,z,radius\n";
+  for (int k = 0; k < 20; ++k) row += std::to_string(k) + ",0,0,1\n";
+  expect_says(tracing("row.csv", row), 0, "19 pairs of particles, ids 1-2, 2-3, 3-4, 4-5, 5-6, ");
+  expect_says(tracing("row.csv", row), 0, "10-11, ... overlap");
+
+  fs::remove(path("x.h5"));
+  const auto same = tracing("same.csv", first + far + "0,0,0,1\n9,9,9,0.5\n");
+  expect_says(same, 2, "same.csv: 2 pairs of particles, ids 1-3, 2-4 are in the same place");
+  EXPECT_FALSE(fs::exists(path("x.h5")));
+  const auto periodic =
+      write("pp.dump",
+            "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n"
+            "0 9\nITEM: ATOMS id x y z radius\n7 0.1 1 1 1\n4 8.9 1 1 1\n");
+  expect_says(vfgen("trace " + periodic + " --rays 100 -o " + path("x.h5")), 0, "ids 4-7 overlap");
+  // A radius in the wrong unit: everything overlaps, and it is said at once.
+  std::string cloud = "x,y,z,radius\n";
+  for (int k = 0; k < 3000; ++k) cloud += std::to_string(k) + ",0,0,5000\n";
+  const auto text = tracing("cloud.csv", cloud).text;
+  EXPECT_EQ(text.rfind("warning: ", 0), 0u) << text;
+  EXPECT_NE(text.find("at least 100"), std::string::npos) << text;
+}
+
 TEST_F(Vfgen, AnErrorOutOfReachIsCode4) {
   expect_says(vfgen("trace " + two_spheres() + " --box 0.0101,0.0104,0.0204 --error 1e-6 -o " + path("x.h5")),
               4, "ask for less");
