@@ -5,8 +5,8 @@
 
 namespace granrad {
 
-/// The candidate closest to a mistyped word (edit distance with transpositions, at most a third of its
-/// length and at least two edits allowed), or "".
+/// The candidate closest to a mistyped word, or "". Near enough is an edit distance (with transpositions) of
+/// a third of its length, rounded, or one edit: two edits make any word of three letters of another.
 std::string closest_word(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace granrad

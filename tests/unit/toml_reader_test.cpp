@@ -99,6 +99,15 @@ TEST(TomlReader, ReportsUnknownKeysWithTheClosestKnownOne) {
   EXPECT_EQ(problems_of(document), expected);
 }
 
+TEST(TomlReader, SuggestsNothingFarForAnUnknownTable) {
+  auto document = TomlDocument::from_string("[foo]\na = 1\n[bxo]\nsize_m = 1\n", "f.toml");
+  document.root().table("box").number("size_m", {}, 1);
+  document.root().table("gas");
+  const std::vector<std::string> expected{"f.toml:1:2: unknown table [foo]. Known here: box, gas",
+                                          "f.toml:3:2: unknown table [bxo]. Did you mean [box]?"};
+  EXPECT_EQ(problems_of(document), expected);
+}
+
 TEST(TomlReader, ReportsMissingKeysAndTablesOnce) {
   auto document = TomlDocument::from_string("[scene]\nname = 'x'\n", "f.toml");
   document.root().table("scene").string("name");
@@ -239,6 +248,11 @@ TEST(Suggestion, FindsTheClosestWordOrNone) {
   EXPECT_EQ(closest_word("radiaton_every", {"rays", "radiation_every"}), "radiation_every");
   EXPECT_EQ(closest_word("teh", {"the", "then"}), "the");
   EXPECT_EQ(closest_word("x", {"y"}), "");
+  EXPECT_EQ(closest_word("foo", {"box", "feed", "gas"}), "");
+  EXPECT_EQ(closest_word("boxx", {"box", "feed", "gas"}), "box");
+  EXPECT_EQ(closest_word("fed", {"box", "feed", "gas"}), "feed");
+  EXPECT_EQ(closest_word("phats", {"paths", "embree"}), "paths");
+  EXPECT_EQ(closest_word("con", {"box", "conduction", "dem"}), "");
   EXPECT_EQ(closest_word("completely", {"different"}), "");
 }
 
