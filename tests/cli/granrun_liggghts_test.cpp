@@ -1,8 +1,16 @@
 // Requirement: granrun runs a scene on LIGGGHTS with the same heat, feed and files as on its own engine, and
-// resumes it to the same bits; a build or scene that LIGGGHTS cannot run is refused with the key that is in
+// resumes it to the same bits, after a signal and at the end of its wall time too, with MPI in the process; a
+// build or scene that LIGGGHTS cannot run is refused with the key that is in
 // the way.
+#include <signal.h>
+
+#include <chrono>
+#include <cmath>
+#include <thread>
+
 #include "coupling/history.h"
 #include "dem/engine_liggghts.h"
+#include "dem/scene/snapshot.h"
 #include "granrun.h"
 
 using namespace granrad;
@@ -44,8 +52,54 @@ TEST(GranrunLiggghts, HeatsAPlugAsTheNativeEngineDoes) {
           .code,
       0);
   ASSERT_EQ(granrun(scratch, "run " + scene + choice + " -o " + resumed.string() + " --resume").code, 0);
-  EXPECT_TRUE(content(last_frame(theirs)) == content(last_frame(resumed)));
-  EXPECT_EQ(content(theirs / "history.csv"), content(resumed / "history.csv"));
+  expect_same_case(theirs, resumed);
+}
+
+// Planted: signals left to the system, which ends the process.
+TEST(GranrunLiggghts, SignalsSaveACheckpointThatResumes) {
+  if (!is_built()) GTEST_SKIP() << "built without LIGGGHTS";
+  for (const auto& [signal, code] : {std::pair{SIGINT, 130}, std::pair{SIGTERM, 143}}) {
+    SCOPED_TRACE(code);
+    Scratch scratch;
+    const auto scene = scratch.write("plug.toml", small_plug).string();
+    const auto stopped = scratch.root / "stopped", whole = scratch.root / "whole";
+    const pid_t child = start_granrun({"run", scene, "-q", "-o", stopped.string(), "--set",
+                                       "dem.engine=liggghts", "--set", "scene.end_time_s=100"});
+    for (int wait = 0; wait < 1500 && !fs::exists(stopped / "frames" / "f_000000800.hdf"); ++wait)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    kill(child, signal);
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFEXITED(status)) << "ended by the signal itself";
+    EXPECT_EQ(exit_code(status), code);
+    for (const auto& entry : fs::directory_iterator(stopped / "frames"))
+      EXPECT_EQ(entry.path().extension(), ".hdf") << entry.path();
+    const Snapshot saved = read_frame(last_frame(stopped));
+    ASSERT_GE(saved.bed.step, 800);
+    EXPECT_EQ(saved.bed.step % 100, 0) << "not a whole heat step";
+
+    const auto end = " -q --set dem.engine=liggghts --set scene.end_time_s=" +
+                     std::to_string(static_cast<double>(saved.bed.step + 500) * 1e-5);
+    ASSERT_EQ(granrun(scratch, "run " + scene + end + " -o " + stopped.string() + " --resume").code, 0);
+    ASSERT_EQ(granrun(scratch, "run " + scene + end + " -o " + whole.string()).code, 0);
+    expect_same_case(whole, stopped);
+  }
+}
+
+// Planted: a stop that saves nothing.
+TEST(GranrunLiggghts, WallTimeSavesACheckpointThatResumes) {
+  if (!is_built()) GTEST_SKIP() << "built without LIGGGHTS";
+  Scratch scratch;
+  const auto run = "run " + scratch.write("plug.toml", small_plug).string() +
+                   " -q --set dem.engine=liggghts --set scene.end_time_s=0.0123 -o ";
+  const auto stopped = scratch.root / "stopped", whole = scratch.root / "whole";
+  EXPECT_EQ(granrun(scratch, run + stopped.string() + " --walltime 0:0:0").code, 75);
+  EXPECT_EQ(last_frame(stopped).filename(), "f_000000100.hdf");
+  EXPECT_EQ(granrun(scratch, run + stopped.string() + " --walltime 0:0:0 --resume").code, 75);
+  EXPECT_EQ(last_frame(stopped).filename(), "f_000000200.hdf");
+  ASSERT_EQ(granrun(scratch, run + stopped.string() + " --resume").code, 0);
+  ASSERT_EQ(granrun(scratch, run + whole.string()).code, 0);
+  expect_same_case(whole, stopped);
 }
 
 TEST(GranrunLiggghts, RefusesWithAdvice) {
