@@ -40,7 +40,9 @@ void refuse_other_scene(const CaseFolder& folder, const Case& c) {
   if (comparable(read_text_file(folder.root() / "scene.toml")) != comparable(c.effective_text))
     throw InputError(
         fmt::format("--resume: the scene differs from {} (a case is continued with the scene it was "
-                    "started with; only scene.end_time_s may change) start a new folder instead",
+                    "started with; only scene.end_time_s may change) start a new folder instead; [particles] "
+                    "file = a frame of this case takes over its particles, temperatures and contacts, "
+                    "whatever the engine",
                     (folder.root() / "scene.toml").string()));
 }
 
