@@ -321,20 +321,63 @@ rays = 300
   EXPECT_TRUE(fs::exists(path("t.html")));
 }
 
-// Version 1 held one variance factor for all pairs, as a dataset.
+/// Version 1 held one variance factor for all pairs, as a dataset.
+void write_version_1(const fs::path& file) {
+  granrad::Hdf5Writer old(file);
+  old.attribute("/", "format", std::string("granrad.view_factors"));
+  old.attribute("/", "version", std::vector<std::int64_t>{1});
+  old.write("/rays/variance_factor", std::vector<double>{1});
+  old.commit();
+}
+
 TEST_F(Vfgen, RefusesViewFactorsOfAnOlderVersion) {
-  {
-    granrad::Hdf5Writer old(path("old.h5"));
-    old.attribute("/", "format", std::string("granrad.view_factors"));
-    old.attribute("/", "version", std::vector<std::int64_t>{1});
-    old.write("/rays/variance_factor", std::vector<double>{1});
-    old.commit();
-  }
+  write_version_1(path("old.h5"));
   const auto outcome = vfgen("fit " + path("old.h5") + " -o " + path("t.toml"));
   expect_says(outcome, 2, "version = 1");
   expect_says(outcome, 2, "trace the snapshot again");
   ASSERT_EQ(vfgen("trace " + two_spheres() + " -q -o " + path("new.h5") + " --rays 10").code, 0);
   EXPECT_EQ(granrad::Hdf5Reader(path("new.h5")).integer_attribute("/", "version"), 2);
+}
+
+/// The name vfgen generate gives the first traced file at 0.3 of the bed below, as each version of the format
+/// made it: FNV-1a of what it depends on.
+std::string traced_name(int version) {
+  const std::string depends =
+      "packing 1 0.008 0.004 0.008 0.0008 100 1 trace " + std::to_string(version) + " lines 300 1 0.3 1";
+  std::uint32_t hash = 2166136261u;
+  for (const char c : depends) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
+  char name[64];
+  std::snprintf(name, sizeof name, "phi_0.3000_01_%08x.h5", hash);
+  return name;
+}
+
+// Planted: the version left out of the name, so that the old file is taken for the one wanted.
+TEST_F(Vfgen, GenerateTracesAnewWhatAnOlderVersionHolds) {
+  const auto config = write("generate.toml", R"([snapshots]
+solid_fractions = [0.3]
+size_m = [0.008, 0.004, 0.008]
+diameter_m = 0.0008
+[trace]
+rays = 300
+[fit]
+form = "transmittance"
+)");
+  const fs::path traced = path("out/traced");
+  fs::create_directories(traced);
+  write_version_1(traced / traced_name(1));
+  ASSERT_EQ(vfgen("-q generate " + config + " -o " + path("fresh")).code, 0);
+  const auto outcome = vfgen("generate " + config + " -o " + path("out"));
+  expect_says(outcome, 0, "transmittance.toml");
+  ASSERT_TRUE(fs::exists(traced / traced_name(2))) << "the rule of the names has changed: mend this test";
+  EXPECT_EQ(granrad::Hdf5Reader(traced / traced_name(2)).integer_attribute("/", "version"), 2);
+  EXPECT_EQ(granrad::Hdf5Reader(traced / traced_name(1)).integer_attribute("/", "version"), 1);
+  const auto table = [&](const std::string& folder) {
+    std::stringstream text;
+    text << std::ifstream(path(folder + "/transmittance.toml")).rdbuf();
+    return text.str();
+  };
+  EXPECT_EQ(table("out"), table("fresh"));
+  EXPECT_FALSE(table("out").empty());
 }
 
 // Planted: the time a trace took, written into the file.
