@@ -112,6 +112,8 @@ std::int64_t NativeEngine::Impl::run(std::int64_t steps, bool finishes, bool& li
   const bool mixed = options.precision == Precision::mixed;
   const auto all_contacts = mixed ? kernels.mixed_contacts : kernels.pair_contacts;
   const auto first_contacts = mixed ? kernels.mixed_contacts_first : kernels.pair_contacts_first;
+  const bool shared =
+      std::any_of(shares.begin(), shares.end(), [](const Share& s) { return s.cross.tight_count() > 0; });
   StepBarrier barrier(static_cast<int>(shares.size()));
 #pragma omp parallel num_threads(static_cast <int>(shares.size()))
   {
@@ -125,11 +127,12 @@ std::int64_t NativeEngine::Impl::run(std::int64_t steps, bool finishes, bool& li
       deepest = std::max(
           {deepest, first_contacts(view, share.cross.view(), model.constants),
            share.walls.add_forces(kernels, *surface, rows, *periods, model.constants, transfer.materials())});
-      barrier.wait();  // now no one else needs these rows where they are
-      share.too_fast = false;
+      if (shared) barrier.wait();  // now no one else needs these rows where they are
+      bool& too_fast = share.too_fast[k & 1];
+      too_fast = false;
       std::int64_t moved = share.range.begin;
       const auto move_rows_before = [&](std::int64_t end) {
-        share.too_fast |= kernels.move(view, moved, end, model.move, finishes && k + 1 == steps);
+        too_fast |= kernels.move(view, moved, end, model.move, finishes && k + 1 == steps);
         moved = end;
       };
       for (std::int64_t b = 0; b < share.own.blocks(); ++b) {
@@ -138,7 +141,7 @@ std::int64_t NativeEngine::Impl::run(std::int64_t steps, bool finishes, bool& li
       }
       move_rows_before(share.range.end);
       barrier.wait();
-      for (const auto& s : shares) stop |= s.too_fast;
+      for (const auto& s : shares) stop |= s.too_fast[k & 1];
 #pragma omp master
       done = k + 1, limit_broken = stop;
     }
