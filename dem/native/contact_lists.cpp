@@ -131,8 +131,9 @@ std::int64_t ContactLists::wanted_life(const Rows& rows, double largest_radius) 
     contacts += s.own.tight_count() + s.cross.tight_count() + s.walls.contact_count();
   const std::int64_t usual = schedule_.refresh_every;
   if (refreshes > 1 && 8 * contacts < rows.count) return 3 * usual;
-  const double crossing = smallest_margin * largest_radius / (2 * diagonal * usual_speed_m_s_ * step_s_);
-  return static_cast<std::int64_t>(std::clamp(crossing, double(usual), double(longest_life * usual)));
+  const double longest = double(longest_life * usual), way_m = 2 * diagonal * usual_speed_m_s_ * step_s_;
+  const double crossing = way_m > 0 ? smallest_margin * largest_radius / way_m : longest;
+  return static_cast<std::int64_t>(std::clamp(crossing, double(usual), longest));
 }
 
 void ContactLists::sort_rows(Rows& rows, const Periods& periods, const Bed& bed, double cell_m) {
