@@ -14,7 +14,7 @@ namespace {
 /// flat. A row in fast flight has a wider skin of its own, so that a few do not end the list of all.
 constexpr double half_skin = 0.25, smallest_margin = 0.01, widest_half_skin = 0.6, widest_own_skin = 4;
 constexpr double skin_lives = 4, slow_share = 0.9;  ///< tight lists a skin is made for; rows that share one
-constexpr int longest_life = 4;                     ///< of a tight list where little moves, in usual lives
+constexpr int longest_life = 2;                     ///< of a tight list where little moves, in usual lives
 const double diagonal = 1.0001 * std::sqrt(3.0);    ///< speed limits hold for each direction alone
 double largest_component(const Vec3& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
@@ -125,15 +125,11 @@ void ContactLists::anticipate(Rows& rows, Model& model, const Periods& periods, 
   if (std::any_of(closing_.begin(), closing_.end(), meets)) set_reaches(rows, steps);
 }
 
-std::int64_t ContactLists::wanted_life(const Rows& rows, double largest_radius) const {
-  std::int64_t contacts = 0;
-  for (const auto& s : shares_)
-    contacts += s.own.tight_count() + s.cross.tight_count() + s.walls.contact_count();
-  const std::int64_t usual = schedule_.refresh_every;
-  if (refreshes > 1 && 8 * contacts < rows.count) return 3 * usual;
-  const double longest = double(longest_life * usual), way_m = 2 * diagonal * usual_speed_m_s_ * step_s_;
+std::int64_t ContactLists::wanted_life(double largest_radius) const {
+  const double usual = schedule_.refresh_every, longest = longest_life * usual;
+  const double way_m = 2 * diagonal * usual_speed_m_s_ * step_s_;
   const double crossing = way_m > 0 ? smallest_margin * largest_radius / way_m : longest;
-  return static_cast<std::int64_t>(std::clamp(crossing, double(usual), longest));
+  return static_cast<std::int64_t>(std::clamp(crossing, usual, longest));
 }
 
 void ContactLists::sort_rows(Rows& rows, const Periods& periods, const Bed& bed, double cell_m) {
@@ -196,7 +192,7 @@ std::int64_t ContactLists::prepare(Rows& rows, Model& model, const Periods& peri
   ++refreshes;
   step_s_ = model.constants.step_s;
   survey_speeds(rows, bed);
-  std::int64_t steps = wanted_life(rows, model.largest_radius);
+  std::int64_t steps = wanted_life(model.largest_radius);
   has_walls_ = surface.facet_count() > 0;
   spare_speed_m_s_ =
       std::max(spare_speed_m_s_, smallest_margin * model.largest_radius / (step_s_ * double(steps)));

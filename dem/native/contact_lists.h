@@ -11,8 +11,7 @@ namespace granrad::native {
 
 /// How often lists are made anew; results do not depend on it.
 struct ListSchedule {
-  int refresh_every = 16;  ///< steps a tight list is made to live; up to four times that where few meet or
-                           ///< little moves
+  int refresh_every = 48;  ///< steps a tight list is made to live; up to twice that where little moves
   int rebuild_every =
       0;  ///< 0: near lists when someone has moved through the skin; else also every so many steps
 };
@@ -52,7 +51,7 @@ class ContactLists {
     double near_m, walls_m;
   };
   /// Steps the next tight lists should live.
-  std::int64_t wanted_life(const Rows& rows, double largest_radius) const;
+  std::int64_t wanted_life(double largest_radius) const;
   std::vector<Memory> collect(const Rows& rows) const;
   double margin_of(double speed, std::int64_t steps) const;
   void anticipate(Rows& rows, Model& model, const Periods& periods, const WallSurface& surface,

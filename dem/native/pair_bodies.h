@@ -85,7 +85,6 @@ struct PairBodies {
                               Scattered& out, V& deepest) {
     const V half = S::set(0.5);
     const auto* springs = S::springs(c);
-    out.live = S::any(S::less(V{}, in.excess));
     if (!out.live) {
       for (int a = 0; a < 3; ++a) S::store(springs[a] + k, V{});
       return;
@@ -159,6 +158,8 @@ struct PairBodies {
           if (!first_only) D::prefetch(rows.force + 8 * ahead);
         }
         gather_positions<periodic, varied>(rows, c, constants, at, in[q]);
+        out[q].live = S::any(S::less(V{}, in[q].excess));
+        if (!out[q].live) continue;
         if constexpr (varied)
           S::pair_velocities_apart(motion, i, j, in[q].velocity, in[q].spin, in[q].other_spin);
         else

@@ -63,11 +63,10 @@ void PairList::finish_near(std::int32_t idle_row) {
 }
 
 std::int64_t PairList::select(const Kernels& kernels, const RowView& rows, const StepConstants& constants) {
-  const auto room = static_cast<std::int64_t>(near_i_.size()) + widest_pack + look_ahead + 8;
-  next_first_.resize(room), next_second_.resize(room), next_source_.resize(room);
-  return kernels.select_close(rows, constants, near_i_.data(), near_j_.data(),
-                              static_cast<std::int64_t>(near_i_.size()), next_first_.data(),
-                              next_second_.data(), next_source_.data());
+  const auto near = static_cast<std::int64_t>(near_i_.size());
+  for (auto* column : {&found_first_, &found_second_, &found_number_}) column->resize(near + 8);
+  return kernels.select_close(rows, constants, near_i_.data(), near_j_.data(), near, found_first_.data(),
+                              found_second_.data(), found_number_.data());
 }
 
 void PairList::find_closing_speeds(const Kernels& kernels, const RowView& rows,
@@ -75,7 +74,7 @@ void PairList::find_closing_speeds(const Kernels& kernels, const RowView& rows,
                                    std::vector<double>& closing) {
   const auto found = select(kernels, rows, constants);
   for (std::int64_t k = 0; k < found; ++k) {
-    const auto i = next_first_[k], j = next_second_[k];
+    const auto i = found_first_[k], j = found_second_[k];
     const double *v = rows.velocity + 8 * std::int64_t(i), *w = rows.velocity + 8 * std::int64_t(j);
     const double speed = norm(Vec3{v[0] - w[0], v[1] - w[1], v[2] - w[2]});
     closing[i] = std::max(closing[i], speed);
@@ -86,26 +85,32 @@ void PairList::find_closing_speeds(const Kernels& kernels, const RowView& rows,
 void PairList::refresh(const Kernels& kernels, const RowView& rows, const StepConstants& constants,
                        const MemoryTable& memories) {
   const auto found = select(kernels, rows, constants);
-  const auto padded = (found + widest_pack - 1) / widest_pack * widest_pack;
-  for (auto k = found; k < padded + look_ahead; ++k)
-    next_first_[k] = idle_row_, next_second_[k] = idle_row_ + 1;
-  next_springs_.resize(padded, rows.motion != nullptr);
-  std::int64_t old = 0;
-  for (std::int64_t k = 0; k < found; ++k) {
-    if (fresh_) {
-      next_springs_.put(k, memories.find(next_first_[k], next_second_[k]));
-      continue;
+  padded_ = (found + widest_pack - 1) / widest_pack * widest_pack;
+  next_springs_.resize(padded_, rows.motion != nullptr), next_number_.resize(found);
+  for (auto* column : {&first_, &second_}) column->resize(padded_ + look_ahead);
+  if (fresh_) place_.assign(near_count_, -1), number_.clear();
+  const auto spring_of = [&](std::int64_t k) {
+    if (fresh_) return memories.find(found_first_[k], found_second_[k]);
+    const auto place = place_[found_number_[k]];
+    return place < 0 ? Vec3{} : springs_.get(place);
+  };
+  for (std::int64_t begin = 0; begin < found; begin += block) {
+    const auto end = std::min(begin + block, found);
+    auto front = begin, back = end;
+    for (auto k = begin; k < end; ++k) {
+      const Vec3 spring = spring_of(k);
+      const auto place = spring == Vec3{} ? --back : front++;
+      first_[place] = found_first_[k], second_[place] = found_second_[k];
+      next_number_[place] = found_number_[k];
+      next_springs_.put(place, spring);
     }
-    while (old < tight_count_ && source_[old] < next_source_[k]) ++old;
-    if (old < tight_count_ && source_[old] == next_source_[k])
-      next_springs_.put(k, springs_.get(old));
-    else
-      next_springs_.put(k, {});
   }
-  for (auto k = found; k < padded; ++k) next_springs_.put(k, {});
-  first_.swap(next_first_), second_.swap(next_second_), source_.swap(next_source_);
-  std::swap(springs_, next_springs_);
-  tight_count_ = found, padded_ = padded, fresh_ = false, varied_used_ = false;
+  for (auto k = found; k < padded_; ++k) next_springs_.put(k, {});
+  for (auto k = found; k < padded_ + look_ahead; ++k) first_[k] = idle_row_, second_[k] = idle_row_ + 1;
+  for (const auto n : number_) place_[n] = -1;
+  for (std::int64_t k = 0; k < found; ++k) place_[next_number_[k]] = static_cast<std::int32_t>(k);
+  number_.swap(next_number_), std::swap(springs_, next_springs_);
+  tight_count_ = found, fresh_ = false, varied_used_ = false;
   find_settled();
 }
 
@@ -151,8 +156,9 @@ std::int64_t PairList::touching_count() const {
 }
 
 std::size_t PairList::bytes() const {
-  return 4 * (near_i_.capacity() + near_j_.capacity() +
-              2 * (first_.capacity() + second_.capacity() + source_.capacity())) +
+  return 4 * (near_i_.capacity() + near_j_.capacity() + first_.capacity() + second_.capacity() +
+              number_.capacity() + next_number_.capacity() + found_first_.capacity() +
+              found_second_.capacity() + found_number_.capacity() + place_.capacity()) +
          springs_.bytes() + next_springs_.bytes() + 8 * varied_.capacity();
 }
 

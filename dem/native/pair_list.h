@@ -30,7 +30,8 @@ class MemoryTable {
 
 /// The pairs one thread works on, in two lists. Near: gap below a skin, found with the grid, kept while
 /// nobody has moved through the skin. Tight: those of the near list that can touch before the next refresh;
-/// only these are visited each step, and they carry the springs.
+/// only these are visited each step, and they carry the springs. In each block of the tight list those with a
+/// spring come first: behind them whole packs touch nothing.
 class PairList {
  public:
   void clear_near() { near_i_.clear(), near_j_.clear(), backward_.clear(); }
@@ -89,7 +90,10 @@ class PairList {
 
   AlignedVector<std::int32_t> near_i_, near_j_;
   std::vector<RowPair> backward_;  ///< near pairs whose first row is the higher one
-  AlignedVector<std::int32_t> first_, second_, source_, next_first_, next_second_, next_source_;
+  AlignedVector<std::int32_t> found_first_, found_second_, found_number_;  ///< what select found, near order
+  AlignedVector<std::int32_t> first_, second_;                             ///< tight pairs
+  AlignedVector<std::int32_t> number_, next_number_;  ///< of tight pairs in the near list
+  AlignedVector<std::int32_t> place_;                 ///< of near pairs in the tight list, or -1
   SpringColumns springs_, next_springs_;
   AlignedVector<double> varied_;
   std::vector<std::int64_t> settled_before_;  ///< by block
