@@ -71,8 +71,9 @@ void expect_flow(const Flow& flow, double least_g_s, double most_g_s) {
   EXPECT_EQ(flow.count + flow.waiting, 13576);
 }
 
+// A mean over 1 s scatters by 0.05 g/s (6.02 to 6.11 were met), one over 3 s by 0.03.
 TEST(MovingBed, LongOutlet4x4) {
-  expect_flow(run("moving_bed_4x4", 1.0, 2.0), 5.9, 6.1);
+  expect_flow(run("moving_bed_4x4", 2.0, 5.0), 5.9, 6.1);
 }
 TEST(MovingBed, LongOutlet3x4) {
   expect_flow(run("moving_bed_3x4", 1.2, 2.5), 3.3, 3.5);
