@@ -21,7 +21,9 @@ namespace fs = std::filesystem;
 
 constexpr double step_s = 1e-5;
 constexpr int threads = 2;
-constexpr double margin_m = 0.1;  ///< room for what has left the outlet
+/// Room about the walls, and below them for what leaves the outlet meanwhile; more would only cost LIGGGHTS
+/// time, whose bins fill the box.
+constexpr double margin_m = 2e-3, way_out_m = 0.05;
 
 double seconds_of(const std::string& command) {
   const auto start = std::chrono::steady_clock::now();
@@ -50,6 +52,7 @@ Bed with_meshes(Bed bed) {
         bed.box.min[a] = std::min(bed.box.min[a], p[a] - margin_m);
         bed.box.max[a] = std::max(bed.box.max[a], p[a] + margin_m);
       }
+  bed.box.min.z -= way_out_m;
   return bed;
 }
 
