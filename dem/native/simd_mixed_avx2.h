@@ -4,12 +4,11 @@
 namespace granrad::native {
 
 /// The law of eight contacts at once in single precision. Operations as in ScalarMixed, same rounding.
-struct Avx2Mixed {
+struct Avx2Mixed : LawInSingle {
   static constexpr int width = 8;
   typedef float V __attribute__((vector_size(32)));
   using M = __m256;
   using Wide = Avx2Pack;
-  using Lane = float;
   static constexpr int halves = 2;
 
   GRANRAD_INLINE V set(double x) { return _mm256_set1_ps(static_cast<float>(x)); }
@@ -37,15 +36,6 @@ struct Avx2Mixed {
   GRANRAD_INLINE __m256i to_fixed(Avx2Pack::V a) {
     const Avx2Pack::V magic = Avx2Pack::set(0x1.8p52);
     return _mm256_sub_epi64((__m256i)(a + magic), (__m256i)magic);
-  }
-  GRANRAD_INLINE V overlap(V sum, V distance, V excess) { return excess / (sum + distance); }
-  template <class Rows>
-  GRANRAD_INLINE const float* motion(const Rows& rows) {
-    return rows.motion;
-  }
-  template <class Contacts>
-  GRANRAD_INLINE float* const* springs(const Contacts& c) {
-    return c.rounded;
   }
 
   /// Rows r[l] = {a, b} of eight contacts to the columns of a and of b.

@@ -4,12 +4,11 @@
 namespace granrad::native {
 
 /// The law of sixteen contacts at once in single precision. Operations as in ScalarMixed, same rounding.
-struct Avx512Mixed {
+struct Avx512Mixed : LawInSingle {
   static constexpr int width = 16;
   typedef float V __attribute__((vector_size(64)));
   using M = __mmask16;
   using Wide = Avx512Pack;
-  using Lane = float;
   static constexpr int halves = 2;
 
   GRANRAD_INLINE V set(double x) { return _mm512_set1_ps(static_cast<float>(x)); }
@@ -37,15 +36,6 @@ struct Avx512Mixed {
     out[1] = _mm512_cvtps_pd(_mm512_extractf32x8_ps(a, 1));
   }
   GRANRAD_INLINE __m512i to_fixed(Avx512Pack::V a) { return Avx512Pack::to_fixed(a); }
-  GRANRAD_INLINE V overlap(V sum, V distance, V excess) { return excess / (sum + distance); }
-  template <class Rows>
-  GRANRAD_INLINE const float* motion(const Rows& rows) {
-    return rows.motion;
-  }
-  template <class Contacts>
-  GRANRAD_INLINE float* const* springs(const Contacts& c) {
-    return c.rounded;
-  }
 
   /// Rows of contacts `row` and `row + 4`.
   GRANRAD_INLINE __m512 two_rows(const float* rows, const std::int32_t* row) {

@@ -5,12 +5,11 @@ namespace granrad::native {
 
 /// The law of a single contact in single precision: a pack for PairBodies with the operations of ScalarPack
 /// that the law needs. Coefficients in memory are double, springs single.
-struct ScalarMixed {
+struct ScalarMixed : LawInSingle {
   static constexpr int width = 1;
   using V = float;
   using M = bool;
   using Wide = ScalarPack;
-  using Lane = float;
   static constexpr int halves = 1;
 
   GRANRAD_INLINE V set(double x) { return static_cast<float>(x); }
@@ -29,17 +28,6 @@ struct ScalarMixed {
   GRANRAD_INLINE void widen(V a, double out[1]) { out[0] = a; }
   /// To the nearest integer, ties to even, of |a| < 2^51: enough for forces of 24 bits.
   GRANRAD_INLINE std::int64_t to_fixed(double a) { return ScalarPack::to_fixed(a); }
-  /// sum - distance without its cancellation: (sum^2 - distance^2) / (sum + distance), the excess from
-  /// double.
-  GRANRAD_INLINE V overlap(V sum, V distance, V excess) { return excess / (sum + distance); }
-  template <class Rows>
-  GRANRAD_INLINE const float* motion(const Rows& rows) {
-    return rows.motion;
-  }
-  template <class Contacts>
-  GRANRAD_INLINE float* const* springs(const Contacts& c) {
-    return c.rounded;
-  }
   GRANRAD_INLINE void pair_velocities(const float* rows, const std::int32_t* i, const std::int32_t* j, V u[3],
                                       V w[3]) {
     const float *a = rows + 8 * std::int64_t(*i), *b = rows + 8 * std::int64_t(*j);

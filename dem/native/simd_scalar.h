@@ -35,6 +35,25 @@ struct LawInDouble {
   }
 };
 
+/// The same for the law in single precision: velocities and springs stand in memory as floats.
+struct LawInSingle {
+  using Lane = float;
+  /// sum - distance without its cancellation: (sum^2 - distance^2) / (sum + distance), the excess from
+  /// double.
+  template <class V>
+  GRANRAD_INLINE V overlap(V sum, V distance, V excess) {
+    return excess / (sum + distance);
+  }
+  template <class Rows>
+  GRANRAD_INLINE const float* motion(const Rows& rows) {
+    return rows.motion;
+  }
+  template <class Contacts>
+  GRANRAD_INLINE float* const* springs(const Contacts& c) {
+    return c.rounded;
+  }
+};
+
 /// The instruction sets differ in their pack: `width` contacts worked on at once. Every pack offers the same
 /// operations with the same rounding (IEEE, nothing fused), so that all give the same bits. Rows are arrays
 /// indexed by particle: position {x, y, z, reach}, velocity {v, limit, omega, -}, force {F, -, torque, -} in

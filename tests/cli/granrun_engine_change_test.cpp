@@ -3,21 +3,14 @@
 // the springs of contacts are taken over.
 #include <algorithm>
 
-#include "dem/engine_liggghts.h"
 #include "dem/scene/snapshot.h"
 #include "granrun.h"
+#include "liggghts_built.h"
 
 using namespace granrad;
 using namespace granrad::cli;
 
 namespace {
-
-bool is_built() {
-  Scene scene;
-  scene.materials.resize(1);
-  scene.materials[0].restitution = 1;
-  return liggghts_problems(scene).empty();
-}
 
 constexpr double radius_m = 4e-4;
 
@@ -93,7 +86,7 @@ Bed last_bed(const fs::path& folder) {
 }  // namespace
 
 TEST(GranrunEngineChange, IsRefusedOnResumeWithAdvice) {
-  if (!is_built()) GTEST_SKIP() << "built without LIGGGHTS";
+  if (!liggghts_is_built()) GTEST_SKIP() << "built without LIGGGHTS";
   for (const auto& [first, second] : {std::pair{"native", "liggghts"}, std::pair{"liggghts", "native"}}) {
     Scratch scratch;
     const auto run = "run " + scratch.write("plug.toml", small_plug).string() + " -q --threads 1 -o " +
@@ -111,7 +104,7 @@ TEST(GranrunEngineChange, IsRefusedOnResumeWithAdvice) {
 
 // Planted: no springs taken over; none of walls; the temperature of the scene instead of the frame's.
 TEST(GranrunEngineChange, ANewCaseFromAFrameGoesOnWithItsSprings) {
-  if (!is_built()) GTEST_SKIP() << "built without LIGGGHTS";
+  if (!liggghts_is_built()) GTEST_SKIP() << "built without LIGGGHTS";
   for (const auto& [first, second] : {std::pair{"native", "liggghts"}, std::pair{"liggghts", "native"}}) {
     SCOPED_TRACE(first);
     Scratch scratch;

@@ -9,26 +9,15 @@
 #include <thread>
 
 #include "coupling/history.h"
-#include "dem/engine_liggghts.h"
 #include "dem/scene/snapshot.h"
 #include "granrun.h"
+#include "liggghts_built.h"
 
 using namespace granrad;
 using namespace granrad::cli;
 
-namespace {
-
-bool is_built() {
-  Scene scene;
-  scene.materials.resize(1);
-  scene.materials[0].restitution = 1;
-  return liggghts_problems(scene).empty();
-}
-
-}  // namespace
-
 TEST(GranrunLiggghts, HeatsAPlugAsTheNativeEngineDoes) {
-  if (!is_built()) GTEST_SKIP() << "built without LIGGGHTS";
+  if (!liggghts_is_built()) GTEST_SKIP() << "built without LIGGGHTS";
   Scratch scratch;
   const auto scene = scratch.write("plug.toml", small_plug).string();
   const auto ours = scratch.root / "native", theirs = scratch.root / "liggghts";
@@ -57,7 +46,7 @@ TEST(GranrunLiggghts, HeatsAPlugAsTheNativeEngineDoes) {
 
 // Planted: signals left to the system, which ends the process.
 TEST(GranrunLiggghts, SignalsSaveACheckpointThatResumes) {
-  if (!is_built()) GTEST_SKIP() << "built without LIGGGHTS";
+  if (!liggghts_is_built()) GTEST_SKIP() << "built without LIGGGHTS";
   for (const auto& [signal, code] : {std::pair{SIGINT, 130}, std::pair{SIGTERM, 143}}) {
     SCOPED_TRACE(code);
     Scratch scratch;
@@ -88,7 +77,7 @@ TEST(GranrunLiggghts, SignalsSaveACheckpointThatResumes) {
 
 // Planted: a stop that saves nothing.
 TEST(GranrunLiggghts, WallTimeSavesACheckpointThatResumes) {
-  if (!is_built()) GTEST_SKIP() << "built without LIGGGHTS";
+  if (!liggghts_is_built()) GTEST_SKIP() << "built without LIGGGHTS";
   Scratch scratch;
   const auto run = "run " + scratch.write("plug.toml", small_plug).string() +
                    " -q --set dem.engine=liggghts --set scene.end_time_s=0.0123 -o ";
@@ -110,5 +99,5 @@ TEST(GranrunLiggghts, RefusesWithAdvice) {
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.err.find("dem.engine = \"liggghts\""), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("use \"native\""), std::string::npos) << outcome.err;
-  EXPECT_EQ(outcome.err.find("restitution = 0.04") != std::string::npos, is_built()) << outcome.err;
+  EXPECT_EQ(outcome.err.find("restitution = 0.04") != std::string::npos, liggghts_is_built()) << outcome.err;
 }
