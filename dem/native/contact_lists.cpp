@@ -236,9 +236,8 @@ std::int64_t ContactLists::prepare(Rows& rows, Model& model, const Periods& peri
     walls_stale_ = false;
   }
   if (rebuild || walls_due) room = measure(rows, steps);
-  while (steps > 1 &&
-         std::min(room.near_m, room.walls_m) < 0)  // a fast particle shortens the life of the list
-    room = measure(rows, steps /= 2);
+  // A fast particle shortens the life of the list.
+  while (steps > 1 && std::min(room.near_m, room.walls_m) < 0) room = measure(rows, steps /= 2);
   anticipate(rows, model, periods, surface, steps);
   const bool varied = !rows.uniform;
 #pragma omp parallel num_threads(static_cast <int>(shares_.size()))

@@ -188,11 +188,9 @@ double WallContacts::add_forces(const Kernels& kernels, const WallSurface& surfa
   double deepest = -1;
   if (plane_count_ > 0) {
     const auto padded = static_cast<std::int64_t>(rows_.size());
-    const ContactView view{
-        rows_.data(), facets_.data(),
-        padded,       {displacement_[0].data(), displacement_[1].data(), displacement_[2].data()},
-        {},           rows.uniform ? nullptr : varied_.data(),
-        padded};
+    ContactView view{rows_.data(), facets_.data(), padded, {}, {}, nullptr, padded};
+    for (int a = 0; a < 3; ++a) view.displacement[a] = displacement_[a].data();
+    if (!rows.uniform) view.varied = varied_.data();
     deepest =
         kernels.plane_contacts(rows.view(), view, {surface.plane_rows(), surface.velocity_rows()}, constants);
   }

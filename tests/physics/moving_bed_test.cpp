@@ -71,7 +71,8 @@ void expect_flow(const Flow& flow, double least_g_s, double most_g_s) {
   EXPECT_EQ(flow.count + flow.waiting, 13576);
 }
 
-// A mean over 1 s scatters by 0.05 g/s (6.02 to 6.11 were met), one over 3 s by 0.03.
+// By the scatter of its 50 ms means the flow over 1 s is uncertain by 0.04 g/s (6.11 was met), over 3 s by
+// 0.025.
 TEST(MovingBed, LongOutlet4x4) {
   expect_flow(run("moving_bed_4x4", 2.0, 5.0), 5.9, 6.1);
 }
