@@ -8,7 +8,7 @@ build=$root/build/release
 
 packages=(build-essential cmake ninja-build git python3
   libembree-dev libeigen3-dev libceres-dev libhdf5-dev libgtest-dev
-  libcli11-dev libtomlplusplus-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
+  libcli11-dev libtomlplusplus-dev libfmt-dev nlohmann-json3-dev
   libudunits2-dev librandom123-dev libboost-math-dev)
 
 # The engine on LIGGGHTS: optional in a build, part of the tests.

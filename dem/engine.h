@@ -1,6 +1,6 @@
 #pragma once
-#include "dem/near_pairs.h"
-#include "dem/scene/bed.h"
+#include "dem/bed/bed.h"
+#include "dem/bed/near_pairs.h"
 
 namespace granrad {
 

@@ -13,7 +13,7 @@ namespace granrad {
 /// no line. One process, one thread; optional in a build.
 ///
 /// Model: `pair_style gran model hertz tangential history [rolling_friction cdt]`, the law of
-/// dem/hertz_mindlin.h with the same mixing of materials; velocity Verlet (`nve/sphere`), of first order in
+/// dem/native/hertz_mindlin.h with the same mixing of materials; velocity Verlet (`nve/sphere`), of first order in
 /// the step once contacts dissipate; standing walls as triangle meshes (`mesh/surface`); gravity, periodic
 /// boundaries, spheres of any radii and materials.
 ///

@@ -6,7 +6,7 @@
 
 namespace granrad {
 
-/// The native engine: Hertz-Mindlin with history (dem/hertz_mindlin.h) and leapfrog with rotation, SIMD
+/// The native engine: Hertz-Mindlin with history (dem/native/hertz_mindlin.h) and leapfrog with rotation, SIMD
 /// kernels for AVX-512, AVX2 and the baseline from one source (chosen at run time; GRANRAD_SIMD=avx512 | avx2
 /// | baseline forces one), OpenMP, order-free fixed-point sums.
 ///

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "dem/scene/bed.h"
+#include "dem/bed/bed.h"
 
 namespace granrad {
 

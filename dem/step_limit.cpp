@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "dem/scene/constants.h"
+#include "dem/base/constants.h"
 
 namespace granrad {
 

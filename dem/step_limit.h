@@ -1,8 +1,8 @@
 #pragma once
 #include <limits>
 
-#include "dem/scene/bed.h"
-#include "dem/scene/material.h"
+#include "dem/bed/bed.h"
+#include "dem/bed/material.h"
 
 namespace granrad {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "dem/scene/error.h"
+#include "dem/base/error.h"
 #include "raytrace/exchange.h"
 
 namespace granrad {

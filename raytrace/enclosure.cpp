@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <optional>
 
-#include "dem/scene/constants.h"
-#include "dem/scene/error.h"
-#include "dem/scene/wall_distance.h"
+#include "dem/base/constants.h"
+#include "dem/base/error.h"
+#include "dem/bed/wall_distance.h"
 
 namespace granrad {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "dem/scene/bed.h"
+#include "dem/bed/bed.h"
 
 namespace granrad {
 

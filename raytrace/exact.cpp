@@ -4,7 +4,7 @@
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 
-#include "dem/scene/constants.h"
+#include "dem/base/constants.h"
 
 namespace granrad {
 

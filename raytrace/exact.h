@@ -1,7 +1,7 @@
 #pragma once
 #include <array>
 
-#include "dem/scene/wall.h"
+#include "dem/bed/wall.h"
 
 namespace granrad {
 

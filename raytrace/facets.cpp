@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "dem/scene/error.h"
+#include "dem/base/error.h"
 
 namespace granrad {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "dem/scene/wall.h"
+#include "dem/bed/wall.h"
 
 namespace granrad {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "dem/scene/wall.h"
+#include "dem/bed/wall.h"
 
 namespace granrad {
 

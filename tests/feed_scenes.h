@@ -1,7 +1,7 @@
 #pragma once
 #include <cmath>
 
-#include "dem/scene/constants.h"
+#include "dem/base/constants.h"
 #include "dem/scene/scene.h"
 
 namespace granrad::testing_scenes {

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <vector>
 
-#include "dem/packing.h"
-#include "raytrace/line_sweep.h"
+#include "dem/packing/packing.h"
+#include "raytrace/lines/line_sweep.h"
 #include "tests/enclosures.h"
 
 namespace granrad {

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "dem/scene/constants.h"
-#include "raytrace/path_source.h"
+#include "dem/base/constants.h"
+#include "raytrace/paths/path_source.h"
 
 namespace granrad::path_cases {
 

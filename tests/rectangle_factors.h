@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "dem/scene/constants.h"
+#include "dem/base/constants.h"
 
 namespace granrad::rectangles {
 

@@ -2,14 +2,15 @@
 #include <fstream>
 #include <string>
 
-#include "dem/scene/bed.h"
+#include "dem/bed/bed.h"
+#include "tests/source_dir.h"
 
 namespace granrad {
 
 /// The settled bed of data/reference/liggghts_bench: 12 500 alumina spheres of 0.8 mm at rest, periodic in x
 /// and y, on a floor; repeated nx x ny times.
 inline Bed settled_bed(int nx = 1, int ny = 1) {
-  std::ifstream in(std::string(GRANRAD_SOURCE_DIR) + "/data/reference/liggghts_bench/bed12k.data");
+  std::ifstream in(granrad::source_dir() + "/data/reference/liggghts_bench/bed12k.data");
   std::string line;
   while (std::getline(in, line) && line.rfind("Atoms", 0) != 0) {
   }

@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "dem/scene/bed.h"
+#include "dem/bed/bed.h"
+#include "tests/source_dir.h"
 
 // The two-body cases of data/reference/liggghts_cases. `lead_s`: how far each free particle is ahead on its
 // way.
@@ -84,7 +85,7 @@ struct CaseEnd {
 
 /// The last row (t, id, x, y, z, vx, vy, vz, wx, wy, wz, ...) with this id.
 inline CaseEnd case_end(const std::string& file, double id) {
-  std::ifstream in(std::string(GRANRAD_SOURCE_DIR) + "/data/reference/liggghts_cases/" + file);
+  std::ifstream in(granrad::source_dir() + "/data/reference/liggghts_cases/" + file);
   EXPECT_TRUE(in) << file;
   std::string line;
   std::vector<double> found(11);

@@ -1,5 +1,5 @@
+#include "dem/base/error.h"
 #include "dem/engine_liggghts.h"
-#include "dem/scene/error.h"
 
 // The engine of a build without LIGGGHTS.
 namespace granrad {

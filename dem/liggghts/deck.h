@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "dem/bed/bed.h"
 #include "dem/liggghts/wall_meshes.h"
-#include "dem/scene/bed.h"
 
 namespace granrad::liggghts {
 

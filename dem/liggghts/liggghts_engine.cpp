@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "dem/base/error.h"
 #include "dem/engine_liggghts.h"
 #include "dem/liggghts/deck.h"
 #include "dem/liggghts/session.h"
-#include "dem/scene/error.h"
 #include "dem/step_clock.h"
 
 namespace granrad {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/bed/wall_distance.h"
 #include "dem/engine_liggghts.h"
-#include "dem/scene/wall_distance.h"
 
 namespace granrad {
 

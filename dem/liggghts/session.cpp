@@ -22,8 +22,8 @@
 #include <algorithm>
 #include <iostream>
 
+#include "dem/base/error.h"
 #include "dem/liggghts/stl_file.h"
-#include "dem/scene/error.h"
 
 namespace {
 

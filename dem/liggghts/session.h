@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "dem/base/vec3.h"
 #include "dem/liggghts/wall_meshes.h"
-#include "dem/scene/vec3.h"
 
 namespace granrad::liggghts {
 

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "dem/scene/error.h"
+#include "dem/base/error.h"
 
 namespace granrad::liggghts {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "dem/scene/vec3.h"
+#include "dem/base/vec3.h"
 
 namespace granrad::liggghts {
 

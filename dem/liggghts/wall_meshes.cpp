@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "dem/scene/wall_distance.h"
+#include "dem/bed/wall_distance.h"
 
 namespace granrad::liggghts {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "dem/scene/bed.h"
+#include "dem/bed/bed.h"
 
 namespace granrad::liggghts {
 

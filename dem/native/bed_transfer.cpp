@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "dem/scene/error.h"
+#include "dem/base/error.h"
 
 namespace granrad::native {
 namespace {

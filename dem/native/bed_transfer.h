@@ -1,9 +1,9 @@
 #pragma once
 #include <vector>
 
+#include "dem/bed/bed.h"
 #include "dem/native/rows.h"
 #include "dem/native/share.h"
-#include "dem/scene/bed.h"
 
 namespace granrad::native {
 

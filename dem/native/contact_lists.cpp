@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dem/scene/error.h"
+#include "dem/base/error.h"
 
 namespace granrad::native {
 namespace {

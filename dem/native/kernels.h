@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "dem/hertz_mindlin.h"
+#include "dem/native/hertz_mindlin.h"
 
 namespace granrad::native {
 

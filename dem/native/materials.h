@@ -1,6 +1,6 @@
 #pragma once
-#include "dem/hertz_mindlin.h"
-#include "dem/scene/material.h"
+#include "dem/bed/material.h"
+#include "dem/native/hertz_mindlin.h"
 
 namespace granrad::native {
 

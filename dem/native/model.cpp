@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/base/constants.h"
 #include "dem/native/materials.h"
-#include "dem/scene/constants.h"
 
 namespace granrad::native {
 namespace {

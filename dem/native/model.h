@@ -1,9 +1,9 @@
 #pragma once
 #include <array>
 
+#include "dem/bed/bed.h"
 #include "dem/native/kernels.h"
 #include "dem/native/rows.h"
-#include "dem/scene/bed.h"
 #include "dem/scene/scene.h"
 
 namespace granrad::native {

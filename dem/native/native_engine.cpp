@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/base/error.h"
 #include "dem/engine_native.h"
 #include "dem/native/bed_transfer.h"
 #include "dem/native/model.h"
 #include "dem/native/near_from_lists.h"
 #include "dem/native/step_barrier.h"
-#include "dem/scene/error.h"
 #include "dem/step_clock.h"
 
 namespace granrad::native {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dem/scene/wall_distance.h"
+#include "dem/bed/wall_distance.h"
 
 namespace granrad::native {
 namespace {

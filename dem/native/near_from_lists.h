@@ -1,6 +1,6 @@
 #pragma once
+#include "dem/bed/near_pairs.h"
 #include "dem/native/contact_lists.h"
-#include "dem/near_pairs.h"
 
 namespace granrad::native {
 

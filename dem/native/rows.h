@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "dem/bed/bed.h"
 #include "dem/native/aligned.h"
 #include "dem/native/kernels.h"
-#include "dem/scene/bed.h"
 
 namespace granrad::native {
 

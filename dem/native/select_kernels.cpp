@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "dem/base/error.h"
 #include "dem/native/kernels.h"
-#include "dem/scene/error.h"
 
 namespace granrad::native {
 namespace {

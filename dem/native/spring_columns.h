@@ -1,8 +1,8 @@
 #pragma once
 #include <cstdint>
 
+#include "dem/base/vec3.h"
 #include "dem/native/aligned.h"
-#include "dem/scene/vec3.h"
 
 namespace granrad::native {
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "dem/bed/wall.h"
 #include "dem/native/aligned.h"
-#include "dem/scene/wall.h"
 
 namespace granrad::native {
 

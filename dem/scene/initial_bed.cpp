@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "dem/scene/cell_grid.h"
-#include "dem/scene/error.h"
+#include "dem/base/error.h"
+#include "dem/bed/cell_grid.h"
+#include "dem/io/snapshot.h"
 #include "dem/scene/scene.h"
-#include "dem/scene/snapshot.h"
 
 namespace granrad {
 

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "dem/scene/error.h"
+#include "dem/base/error.h"
+#include "dem/io/snapshot.h"
 #include "dem/scene/scene_parts.h"
-#include "dem/scene/snapshot.h"
 
 namespace granrad {
 

@@ -5,14 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "dem/scene/bed.h"
-#include "dem/scene/material.h"
-#include "dem/scene/toml_reader.h"
-#include "dem/scene/wall.h"
+#include "dem/base/toml_reader.h"
+#include "dem/bed/bed.h"
+#include "dem/bed/material.h"
+#include "dem/bed/wall.h"
 
 namespace granrad {
 
-/// How particles come in and go (see dem/feed.h).
+/// How particles come in and go (see dem/feed/feed.h).
 struct FeedSettings {
   enum class Kind { none, plug, hopper };
   Kind kind = Kind::none;
@@ -34,7 +34,7 @@ enum class EngineKind { native, liggghts, none };
 enum class Precision { full, mixed };
 
 /// The flow part of what the user wrote: SI, checked, complete. Each room reads its own part from the same
-/// document (heat: coupling/heat_scene.h).
+/// document (heat: coupling/simulation/heat_scene.h).
 struct Scene {
   std::string name;
   double end_time_s = 0;

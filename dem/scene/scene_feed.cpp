@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "dem/scene/constants.h"
+#include "dem/base/constants.h"
 #include "dem/scene/scene_parts.h"
 
 namespace granrad {

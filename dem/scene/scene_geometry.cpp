@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "dem/scene/error.h"
-#include "dem/scene/import_stl.h"
+#include "dem/base/error.h"
+#include "dem/io/import_stl.h"
 #include "dem/scene/scene_parts.h"
 
 namespace granrad {

@@ -2,18 +2,19 @@
 // LIGGGHTS to 1e-6, and a step that is too long is refused with the largest allowed.
 // Planted, seen to fail: A without the factor 1/4 (five tests); heat given to one end only (conservation and
 // LIGGGHTS).
-#include "coupling/conduction.h"
+#include "coupling/heat/conduction.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <sstream>
 
-#include "coupling/contact_conductance.h"
-#include "coupling/gas_lens.h"
-#include "coupling/heat_step.h"
-#include "dem/scene/constants.h"
-#include "dem/scene/error.h"
+#include "coupling/heat/contact_conductance.h"
+#include "coupling/heat/gas_lens.h"
+#include "coupling/heat/heat_step.h"
+#include "dem/base/constants.h"
+#include "dem/base/error.h"
+#include "tests/source_dir.h"
 
 namespace granrad {
 namespace {
@@ -75,7 +76,7 @@ struct Record {
 };
 
 std::vector<Record> liggghts(const std::string& name) {
-  std::ifstream in(std::string(GRANRAD_SOURCE_DIR) + "/data/reference/liggghts/" + name);
+  std::ifstream in(granrad::source_dir() + "/data/reference/liggghts/" + name);
   std::vector<Record> records;
   for (std::string line; std::getline(in, line);) {
     if (line.empty() || line[0] == '#' || line[0] == 't') continue;

@@ -5,11 +5,11 @@
 
 #include <cmath>
 
-#include "coupling/energy_ledger.h"
-#include "coupling/heat_step.h"
-#include "coupling/radiosity_source.h"
-#include "dem/scene/constants.h"
-#include "raytrace/path_source.h"
+#include "coupling/heat/energy_ledger.h"
+#include "coupling/heat/heat_step.h"
+#include "coupling/heat/radiosity_source.h"
+#include "dem/base/constants.h"
+#include "raytrace/paths/path_source.h"
 
 namespace granrad {
 namespace {

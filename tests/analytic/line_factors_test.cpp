@@ -5,7 +5,7 @@
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 
-#include "dem/scene/constants.h"
+#include "dem/base/constants.h"
 #include "raytrace/exact.h"
 #include "tests/line_cases.h"
 

@@ -4,10 +4,10 @@
 // absorption at re-radiating walls (cube); standard error of one batch for that of the sum (ErrorsAreTrue).
 #include <gtest/gtest.h>
 
-#include "coupling/radiosity.h"
-#include "dem/scene/random.h"
+#include "coupling/heat/radiosity.h"
+#include "dem/base/random.h"
 #include "path_cases.h"
-#include "raytrace/emission.h"
+#include "raytrace/rays/emission.h"
 #include "rectangle_factors.h"
 
 namespace granrad {

@@ -1,7 +1,7 @@
 // Requirement: net heats of grey surfaces with one radiosity each agree with closed forms to 1e-12 (and with
 // the printed references to their last digit), for every emissivity from 0 to 1, and with a dense solution.
 // Planted, seen to fail: 1 for 1 - eps in the reflected part (ten of eleven tests).
-#include "coupling/radiosity.h"
+#include "coupling/heat/radiosity.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -10,8 +10,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "dem/scene/constants.h"
-#include "dem/scene/random.h"
+#include "dem/base/constants.h"
+#include "dem/base/random.h"
 #include "raytrace/exact.h"
 
 namespace granrad {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "dem/scene/constants.h"
-#include "raytrace/sphere_harmonics.h"
+#include "dem/base/constants.h"
+#include "raytrace/lines/sphere_harmonics.h"
 
 namespace granrad {
 namespace {

@@ -1,16 +1,17 @@
 // Requirement: ray-traced view factors equal the closed forms within 4 sigma at 1e6 rays, and the sigma they
 // state is right: two spheres of any sizes from contact to ten diameters, a sphere in the channel box, the
 // empty box.
-#include "raytrace/view_factors.h"
+#include "raytrace/rays/view_factors.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "raytrace/embree_tracer.h"
+#include "raytrace/embree/embree_tracer.h"
 #include "raytrace/exact.h"
-#include "raytrace/ray_rows.h"
+#include "raytrace/rays/ray_rows.h"
 #include "tests/enclosures.h"
+#include "tests/source_dir.h"
 
 namespace granrad {
 namespace {
@@ -92,7 +93,7 @@ HitCounts trace_sphere(const Enclosure& e) {
 }
 
 TEST(SphereInBox, EqualsSolidAngles) {
-  std::ifstream file(GRANRAD_SOURCE_DIR "/data/reference/sphere_rect_exact.csv");
+  std::ifstream file(granrad::source_dir() + "/data/reference/sphere_rect_exact.csv");
   std::string line;
   int rows = 0;
   for (std::getline(file, line), std::getline(file, line); std::getline(file, line); ++rows) {
@@ -134,7 +135,7 @@ TEST(EmptyBox, EqualsClosedForms) {
 }
 
 TEST(Exact, TwoSpheresEqualTheTable) {
-  std::ifstream file(GRANRAD_SOURCE_DIR "/data/reference/two_sphere_equal.csv");
+  std::ifstream file(granrad::source_dir() + "/data/reference/two_sphere_equal.csv");
   std::string line;
   int rows = 0;
   for (std::getline(file, line), std::getline(file, line); std::getline(file, line); ++rows) {

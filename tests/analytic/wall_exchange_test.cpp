@@ -1,5 +1,5 @@
 // Exchange among the walls follows the closed forms of an empty box, and Beer's law between near plates.
-#include "fit/wall_exchange.h"
+#include "fit/correlation/wall_exchange.h"
 
 #include <gtest/gtest.h>
 

@@ -11,8 +11,9 @@
 #include <string>
 #include <string_view>
 
-#include "dem/scene/snapshot.h"
+#include "dem/io/snapshot.h"
 #include "tests/bench/dem_bench_peers.h"
+#include "tests/source_dir.h"
 
 namespace granrad::bench {
 namespace {
@@ -62,7 +63,7 @@ double granrun_seconds(const fs::path& out, double end_s, const std::string& pre
   return seconds_of(
       fmt::format("'{}' run '{}/data/scenes/moving_bed_4x4.toml' -q -o '{}' --threads {} --set "
                   "scene.end_time_s={} --set dem.precision={}",
-                  GRANRUN, GRANRAD_SOURCE_DIR, out.string(), threads, end_s, precision));
+                  GRANRUN, granrad::source_dir(), out.string(), threads, end_s, precision));
 }
 
 int run(const fs::path& folder, bool quick) {

@@ -12,17 +12,18 @@
 #include <string_view>
 #include <vector>
 
-#include "coupling/heat_step.h"
+#include "coupling/heat/heat_step.h"
+#include "dem/base/random.h"
 #include "dem/native/native_engine.h"
-#include "dem/scene/random.h"
 #include "tests/bench/dem_bench_peers.h"
 #include "tests/settled_bed.h"
+#include "tests/source_dir.h"
 
 namespace granrad::bench {
 namespace {
 
 constexpr double step = 1e-5, radius = 4e-4;
-const std::filesystem::path data_folder = GRANRAD_SOURCE_DIR "/data/reference/liggghts_bench";
+const std::filesystem::path data_folder = granrad::source_dir() + "/data/reference/liggghts_bench";
 constexpr int piece = 100;  ///< steps of one advance, as in a coupled run
 
 Material alumina() {
@@ -69,7 +70,7 @@ Wall frustum(const std::string& name, double x0, double y0, double z0, double x1
 Bed moving_bed() {
   Bed bed;
   bed.materials = {alumina()};
-  std::ifstream in(std::string(GRANRAD_SOURCE_DIR) + "/data/reference/snapshot_outlet_4x4.dump");
+  std::ifstream in(granrad::source_dir() + "/data/reference/snapshot_outlet_4x4.dump");
   std::string line;
   while (std::getline(in, line) && line.rfind("ITEM: ATOMS", 0) != 0) {
   }

@@ -10,7 +10,7 @@
 #include <regex>
 #include <string>
 
-#include "dem/scene/bed.h"
+#include "dem/bed/bed.h"
 
 // The same beds run by Debian's LIGGGHTS and LAMMPS, one process each.
 namespace granrad::bench {

@@ -10,11 +10,11 @@
 #include <ctime>
 #include <filesystem>
 
-#include "coupling/radiosity.h"
-#include "dem/packing.h"
-#include "dem/scene/constants.h"
-#include "raytrace/path_source.h"
-#include "raytrace/view_factors.h"
+#include "coupling/heat/radiosity.h"
+#include "dem/base/constants.h"
+#include "dem/packing/packing.h"
+#include "raytrace/paths/path_source.h"
+#include "raytrace/rays/view_factors.h"
 
 using namespace granrad;
 

@@ -15,16 +15,16 @@
 #include <optional>
 #include <random>
 
-#include "dem/near_pairs.h"
-#include "dem/packing.h"
-#include "dem/scene/constants.h"
-#include "dem/scene/error.h"
-#include "raytrace/embree_tracer.h"
-#include "raytrace/emission.h"
-#include "raytrace/line_directions.h"
-#include "raytrace/line_pass.h"
-#include "raytrace/line_sweep.h"
-#include "raytrace/view_factors.h"
+#include "dem/base/constants.h"
+#include "dem/base/error.h"
+#include "dem/bed/near_pairs.h"
+#include "dem/packing/packing.h"
+#include "raytrace/embree/embree_tracer.h"
+#include "raytrace/line_pass/line_directions.h"
+#include "raytrace/line_pass/line_pass.h"
+#include "raytrace/lines/line_sweep.h"
+#include "raytrace/rays/emission.h"
+#include "raytrace/rays/view_factors.h"
 
 using namespace granrad;
 

@@ -1,6 +1,7 @@
 // Requirement: whatever is wrong in what the user wrote, granrun says where and what, exits with 2 (3: cannot
 // be read) and writes nothing.
 #include "granrun.h"
+#include "tests/source_dir.h"
 
 using namespace granrad::cli;
 
@@ -157,7 +158,8 @@ TEST(GranrunBadInput, AMissingParticleFileIsOneMistake) {
 
 TEST(GranrunBadInput, BadTablesAreRefused) {
   Scratch scratch;
-  const std::string good = content(fs::path(GRANRAD_SOURCE_DIR) / "data/correlations/li_2024_printed.toml");
+  const std::string good =
+      content(fs::path(granrad::source_dir()) / "data/correlations/li_2024_printed.toml");
   const auto scene = scratch
                          .write("plug.toml", edited(small_plug, "source = \"paths\"\nrays = 500",
                                                     "source = \"correlation\"\ntable = \"table.toml\""))

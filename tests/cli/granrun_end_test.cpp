@@ -1,7 +1,7 @@
 // Requirement: a run ends at the end asked for, its last heat step cut short where it must be, with the
 // energy closed and the same bits after a stop; a longer run goes on as if that end had never been. An end
 // between two steps is moved to the nearest one, and said so.
-#include "coupling/history.h"
+#include "coupling/simulation/history.h"
 #include "granrun.h"
 
 using namespace granrad;

@@ -3,7 +3,7 @@
 // the springs of contacts are taken over.
 #include <algorithm>
 
-#include "dem/scene/snapshot.h"
+#include "dem/io/snapshot.h"
 #include "granrun.h"
 #include "liggghts_built.h"
 

@@ -2,7 +2,7 @@
 // and no nan stands for it.
 #include <cmath>
 
-#include "coupling/history.h"
+#include "coupling/simulation/history.h"
 #include "granrun.h"
 
 using namespace granrad;

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <thread>
 
-#include "coupling/history.h"
-#include "dem/scene/snapshot.h"
+#include "coupling/simulation/history.h"
+#include "dem/io/snapshot.h"
 #include "granrun.h"
 #include "liggghts_built.h"
 

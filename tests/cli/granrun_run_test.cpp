@@ -6,7 +6,7 @@
 #include <cmath>
 #include <thread>
 
-#include "coupling/history.h"
+#include "coupling/simulation/history.h"
 #include "granrun.h"
 
 using namespace granrad;

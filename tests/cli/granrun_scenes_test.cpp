@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "granrun.h"
+#include "tests/source_dir.h"
 
 using namespace granrad::cli;
 
@@ -9,7 +10,7 @@ namespace {
 
 std::vector<fs::path> scenes() {
   std::vector<fs::path> all;
-  for (const auto& entry : fs::directory_iterator(fs::path(GRANRAD_SOURCE_DIR) / "data/scenes"))
+  for (const auto& entry : fs::directory_iterator(fs::path(granrad::source_dir()) / "data/scenes"))
     if (entry.path().extension() == ".toml") all.push_back(entry.path());
   std::sort(all.begin(), all.end());
   return all;

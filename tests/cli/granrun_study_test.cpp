@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "coupling/history.h"
+#include "coupling/simulation/history.h"
 #include "granrun.h"
 
 using namespace granrad;

@@ -8,9 +8,10 @@
 #include <fstream>
 #include <sstream>
 
-#include "dem/scene/hdf5_file.h"
+#include "dem/base/hdf5_file.h"
 #include "raytrace/exact.h"
-#include "raytrace/view_factor_file.h"
+#include "raytrace/rays/view_factor_file.h"
+#include "tests/source_dir.h"
 
 namespace {
 
@@ -61,7 +62,7 @@ void expect_says(const Outcome& outcome, int code, const std::string& part) {
   EXPECT_NE(outcome.text.find(part), std::string::npos) << "no '" << part << "' in\n" << outcome.text;
 }
 
-const std::string source_dir = GRANRAD_SOURCE_DIR;
+const std::string source_dir = granrad::source_dir();
 
 TEST_F(Vfgen, ExplainsItself) {
   expect_says(vfgen("--help"), 0, "trace");

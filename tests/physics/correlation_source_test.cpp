@@ -1,6 +1,6 @@
 // Exchange areas from a table are symmetric, closable and near the traced ones; a fit to a traced bed is as
 // good as the published fits to other beds.
-#include "fit/correlation_source.h"
+#include "fit/correlation/correlation_source.h"
 
 #include <gtest/gtest.h>
 
@@ -8,16 +8,17 @@
 #include <fstream>
 #include <sstream>
 
-#include "dem/packing.h"
-#include "dem/scene/error.h"
-#include "fit/fit_correlation.h"
-#include "raytrace/view_factors.h"
+#include "dem/base/error.h"
+#include "dem/packing/packing.h"
+#include "fit/fitting/fit_correlation.h"
+#include "raytrace/rays/view_factors.h"
+#include "tests/source_dir.h"
 
 namespace granrad {
 namespace {
 
 CorrelationTable printed() {
-  return read_correlation(std::string(GRANRAD_SOURCE_DIR) + "/data/correlations/li_2024_printed.toml");
+  return read_correlation(granrad::source_dir() + "/data/correlations/li_2024_printed.toml");
 }
 
 CorrelationTable transmittance(double phi, double a, double b, double t0, double c, double e) {
@@ -44,7 +45,7 @@ Enclosure bed(const Box& box, double phi, std::uint64_t seed) {
 
 /// The value in `column` of the first row of a reference table whose leading cells are `key`.
 double reference(const std::string& name, const std::string& key, std::size_t column) {
-  std::ifstream in(std::string(GRANRAD_SOURCE_DIR) + "/data/reference/" + name);
+  std::ifstream in(granrad::source_dir() + "/data/reference/" + name);
   for (std::string line; std::getline(in, line);) {
     if (line.rfind(key, 0) != 0) continue;
     std::stringstream cells(line);

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "dem/base/error.h"
+#include "dem/base/random.h"
 #include "dem/engine_native.h"
-#include "dem/scene/error.h"
-#include "dem/scene/random.h"
 #include "dem/step_limit.h"
 
 namespace granrad {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "dem/base/constants.h"
 #include "dem/engine_native.h"
-#include "dem/scene/constants.h"
 
 namespace granrad {
 namespace {

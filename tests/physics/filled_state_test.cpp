@@ -7,9 +7,9 @@
 #include <cstring>
 
 #include "dem/engine_native.h"
-#include "dem/feed.h"
+#include "dem/feed/feed.h"
+#include "dem/io/snapshot.h"
 #include "dem/scene/scene.h"
-#include "dem/scene/snapshot.h"
 #include "tests/temporary_folder.h"
 
 namespace granrad {

@@ -7,11 +7,11 @@
 
 #include <map>
 
-#include "coupling/heat_step.h"
-#include "coupling/radiosity_source.h"
-#include "dem/packing.h"
+#include "coupling/heat/heat_step.h"
+#include "coupling/heat/radiosity_source.h"
+#include "dem/packing/packing.h"
 #include "path_cases.h"
-#include "raytrace/view_factors.h"
+#include "raytrace/rays/view_factors.h"
 
 namespace granrad {
 namespace {

@@ -6,12 +6,12 @@
 #include <limits>
 #include <numeric>
 
-#include "dem/scene/constants.h"
-#include "dem/scene/error.h"
-#include "dem/scene/random.h"
-#include "raytrace/embree_tracer.h"
+#include "dem/base/constants.h"
+#include "dem/base/error.h"
+#include "dem/base/random.h"
+#include "raytrace/embree/embree_tracer.h"
 #include "raytrace/exact.h"
-#include "raytrace/ray_rows.h"
+#include "raytrace/rays/ray_rows.h"
 #include "tests/enclosures.h"
 
 namespace granrad {

@@ -7,8 +7,8 @@
 
 #include <cmath>
 
-#include "dem/packing.h"
-#include "dem/scene/constants.h"
+#include "dem/base/constants.h"
+#include "dem/packing/packing.h"
 
 namespace granrad {
 namespace {

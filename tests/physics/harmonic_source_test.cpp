@@ -6,9 +6,9 @@
 #include <map>
 #include <numeric>
 
-#include "coupling/harmonic_source.h"
-#include "dem/packing.h"
-#include "dem/scene/error.h"
+#include "coupling/heat/harmonic_source.h"
+#include "dem/base/error.h"
+#include "dem/packing/packing.h"
 #include "path_cases.h"
 
 namespace granrad {

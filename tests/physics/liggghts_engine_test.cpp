@@ -4,10 +4,10 @@
 
 #include <cstring>
 
+#include "dem/base/constants.h"
+#include "dem/base/error.h"
+#include "dem/base/random.h"
 #include "dem/engine_native.h"
-#include "dem/scene/constants.h"
-#include "dem/scene/error.h"
-#include "dem/scene/random.h"
 #include "tests/settled_bed.h"
 #include "tests/two_body_cases.h"
 

@@ -6,11 +6,11 @@
 #include <cstdlib>
 #include <numeric>
 
-#include "dem/scene/constants.h"
-#include "raytrace/embree_tracer.h"
-#include "raytrace/line_directions.h"
-#include "raytrace/line_pass.h"
-#include "raytrace/view_factors.h"
+#include "dem/base/constants.h"
+#include "raytrace/embree/embree_tracer.h"
+#include "raytrace/line_pass/line_directions.h"
+#include "raytrace/line_pass/line_pass.h"
+#include "raytrace/rays/view_factors.h"
 #include "tests/line_cases.h"
 
 namespace granrad {

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "dem/scene/error.h"
-#include "raytrace/line_sweep.h"
-#include "raytrace/view_factors.h"
+#include "dem/base/error.h"
+#include "raytrace/lines/line_sweep.h"
+#include "raytrace/rays/view_factors.h"
 #include "tests/line_cases.h"
 
 namespace granrad {

@@ -9,8 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/base/random.h"
 #include "dem/engine_native.h"
-#include "dem/scene/random.h"
 
 namespace granrad {
 namespace {

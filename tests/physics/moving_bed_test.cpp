@@ -9,8 +9,9 @@
 #include <map>
 
 #include "dem/engine_native.h"
-#include "dem/feed.h"
+#include "dem/feed/feed.h"
 #include "tests/feed_scenes.h"
+#include "tests/source_dir.h"
 
 namespace granrad {
 namespace {
@@ -22,7 +23,7 @@ struct Flow {
 
 /// Runs a scene to `end_s` and averages from `from_s` on.
 Flow run(const std::string& name, double from_s, double end_s) {
-  auto document = TomlDocument::from_file(GRANRAD_SOURCE_DIR "/data/scenes/" + name + ".toml");
+  auto document = TomlDocument::from_file(granrad::source_dir() + "/data/scenes/" + name + ".toml");
   const Scene scene = read_scene(document);
   Feed feed(scene);
   Bed bed = initial_bed(scene);
@@ -99,7 +100,7 @@ double solid_volume(const Bed& bed, double low, double high) {
 
 /// Solid fractions of slices of the feed hopper, by their lower end (data/reference/liggghts_feed_fill.csv).
 std::map<double, double> filled_feed_of_liggghts() {
-  std::ifstream in(GRANRAD_SOURCE_DIR "/data/reference/liggghts_feed_fill.csv");
+  std::ifstream in(granrad::source_dir() + "/data/reference/liggghts_feed_fill.csv");
   EXPECT_TRUE(in);
   std::map<double, double> slices;
   for (std::string line; std::getline(in, line);)
@@ -110,7 +111,7 @@ std::map<double, double> filled_feed_of_liggghts() {
 // The feed hopper alone, filled over a shutter at its foot as in LIGGGHTS: the same number of spheres,
 // loosely strewn, falling at 0.4 m/s.
 TEST(MovingBed, LongFilledFeedIsAsDenseAsInLiggghts) {
-  auto document = TomlDocument::from_file(GRANRAD_SOURCE_DIR "/data/scenes/moving_bed_4x4.toml");
+  auto document = TomlDocument::from_file(granrad::source_dir() + "/data/scenes/moving_bed_4x4.toml");
   Scene scene = read_scene(document);
   Wall shutter;
   shutter.vertices = {

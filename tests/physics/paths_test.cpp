@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "dem/scene/error.h"
+#include "dem/base/error.h"
 #include "path_cases.h"
 
 namespace granrad {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "dem/engine_native.h"
-#include "dem/feed.h"
+#include "dem/feed/feed.h"
 #include "tests/feed_scenes.h"
 
 namespace granrad {

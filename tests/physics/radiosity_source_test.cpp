@@ -2,14 +2,14 @@
 // bed, and agree with traced paths where one radiosity per surface is exact (black surfaces). Planted, seen
 // to fail: adiabatic walls with their emissivity; excluded walls kept; variance for standard error (agreement
 // with paths).
-#include "coupling/radiosity_source.h"
+#include "coupling/heat/radiosity_source.h"
 
 #include <gtest/gtest.h>
 
 #include <numeric>
 
 #include "path_cases.h"
-#include "raytrace/view_factors.h"
+#include "raytrace/rays/view_factors.h"
 
 namespace granrad {
 namespace {

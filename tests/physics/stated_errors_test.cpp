@@ -8,8 +8,8 @@
 #include <random>
 
 #include "raytrace/exact.h"
+#include "raytrace/rays/view_factors.h"
 #include "raytrace/stated_error.h"
-#include "raytrace/view_factors.h"
 #include "tests/line_cases.h"
 
 namespace granrad {

@@ -2,10 +2,10 @@
 // within their stated errors, close, and give the heat between concentric spheres.
 #include <gtest/gtest.h>
 
-#include "dem/scene/constants.h"
-#include "dem/scene/error.h"
-#include "dem/scene/random.h"
-#include "raytrace/view_factors.h"
+#include "dem/base/constants.h"
+#include "dem/base/error.h"
+#include "dem/base/random.h"
+#include "raytrace/rays/view_factors.h"
 #include "tests/enclosures.h"
 
 namespace granrad {

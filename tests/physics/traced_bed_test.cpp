@@ -5,10 +5,11 @@
 
 #include <filesystem>
 
-#include "dem/scene/error.h"
-#include "dem/scene/snapshot.h"
-#include "raytrace/view_factor_file.h"
+#include "dem/base/error.h"
+#include "dem/io/snapshot.h"
+#include "raytrace/rays/view_factor_file.h"
 #include "tests/enclosures.h"
+#include "tests/source_dir.h"
 #include "tests/temporary_folder.h"
 
 namespace granrad {
@@ -16,7 +17,7 @@ namespace {
 
 const Enclosure& real_bed() {
   static const Enclosure enclosure = [] {
-    Bed bed = read_snapshot(GRANRAD_SOURCE_DIR "/data/reference/snapshot_outlet_4x4.dump", 4e-4).bed;
+    Bed bed = read_snapshot(granrad::source_dir() + "/data/reference/snapshot_outlet_4x4.dump", 4e-4).bed;
     const Box box{{-0.005, -0.002, 0}, {0.005, 0.002, 0.050}};
     for (Wall wall : box_walls(box)) {
       wall.contact = wall.name[0] != 'z';
@@ -154,7 +155,7 @@ TEST(ViewFactorFile, GivesBackWhatWasWritten) {
   EXPECT_EQ(back.origin, content.origin);
   EXPECT_EQ(back.seed, 42u);
   EXPECT_EQ(back.check.mean_chord_ratio, content.check.mean_chord_ratio);
-  EXPECT_THROW(read_view_factors(GRANRAD_SOURCE_DIR "/data/reference/two_sphere_equal.csv"), Error);
+  EXPECT_THROW(read_view_factors(granrad::source_dir() + "/data/reference/two_sphere_equal.csv"), Error);
 }
 
 }  // namespace

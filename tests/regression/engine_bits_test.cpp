@@ -9,8 +9,8 @@
 #include <cstring>
 #include <sstream>
 
+#include "dem/base/random.h"
 #include "dem/native/native_engine.h"
-#include "dem/scene/random.h"
 
 namespace granrad {
 namespace {

@@ -2,8 +2,8 @@
 // reciprocal, weighs the two estimates of a pair by their rays, and refuses what cannot close.
 #include <gtest/gtest.h>
 
-#include "dem/scene/error.h"
-#include "dem/scene/random.h"
+#include "dem/base/error.h"
+#include "dem/base/random.h"
 #include "raytrace/exact.h"
 #include "tests/enclosures.h"
 

@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "dem/scene/error.h"
-#include "fit/correlation.h"
+#include "dem/base/error.h"
+#include "fit/correlation/correlation.h"
 
 namespace granrad {
 namespace {

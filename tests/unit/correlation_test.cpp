@@ -1,21 +1,22 @@
 // A table gives the printed formula in its own convention, stays within the physical bounds, interpolates
 // between its solid fractions and refuses to leave them.
-#include "fit/correlation.h"
+#include "fit/correlation/correlation.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "dem/scene/error.h"
-#include "fit/unobstructed_pair.h"
+#include "dem/base/error.h"
+#include "fit/correlation/unobstructed_pair.h"
 #include "raytrace/exact.h"
+#include "tests/source_dir.h"
 
 namespace granrad {
 namespace {
 
 CorrelationTable printed() {
-  return read_correlation(std::string(GRANRAD_SOURCE_DIR) + "/data/correlations/li_2024_printed.toml");
+  return read_correlation(granrad::source_dir() + "/data/correlations/li_2024_printed.toml");
 }
 
 CorrelationTable transmittance() {

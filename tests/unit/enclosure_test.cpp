@@ -6,8 +6,8 @@
 
 #include <limits>
 
-#include "dem/scene/constants.h"
-#include "dem/scene/error.h"
+#include "dem/base/constants.h"
+#include "dem/base/error.h"
 
 namespace granrad {
 namespace {

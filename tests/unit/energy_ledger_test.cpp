@@ -1,12 +1,12 @@
 // Requirement: the ledger finds energy that was made or lost, keeps its sums exact over many steps, and
 // survives a restart to the bit. Planted, seen to fail: heat through the gas left out of the books
 // (ClosesOverManySteps).
-#include "coupling/energy_ledger.h"
+#include "coupling/heat/energy_ledger.h"
 
 #include <gtest/gtest.h>
 
-#include "dem/scene/error.h"
-#include "dem/scene/random.h"
+#include "dem/base/error.h"
+#include "dem/base/random.h"
 
 namespace granrad {
 namespace {

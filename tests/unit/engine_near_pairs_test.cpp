@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "dem/base/random.h"
 #include "dem/native/native_engine.h"
-#include "dem/scene/random.h"
 
 namespace granrad {
 namespace {

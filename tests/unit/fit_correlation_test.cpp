@@ -1,13 +1,13 @@
 // A fit finds the coefficients its samples were made with, says how well it knows them, and refuses samples
 // that do not determine them.
-#include "fit/fit_correlation.h"
+#include "fit/fitting/fit_correlation.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "dem/scene/error.h"
-#include "dem/scene/random.h"
+#include "dem/base/error.h"
+#include "dem/base/random.h"
 #include "raytrace/exact.h"
 
 namespace granrad {

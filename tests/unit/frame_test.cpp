@@ -7,10 +7,10 @@
 #include <fstream>
 #include <limits>
 
-#include "dem/scene/error.h"
-#include "dem/scene/hdf5_file.h"
-#include "dem/scene/random.h"
-#include "dem/scene/snapshot.h"
+#include "dem/base/error.h"
+#include "dem/base/hdf5_file.h"
+#include "dem/base/random.h"
+#include "dem/io/snapshot.h"
 #include "tests/temporary_folder.h"
 
 namespace granrad {

@@ -4,8 +4,8 @@
 // counter not restored.
 #include <gtest/gtest.h>
 
-#include "dem/feed.h"
-#include "dem/scene/error.h"
+#include "dem/base/error.h"
+#include "dem/feed/feed.h"
 #include "tests/feed_scenes.h"
 
 namespace granrad {

@@ -1,6 +1,6 @@
 // A report is one whole self-contained file, readable on any scale, and never shows NaN or a point off its
 // axis.
-#include "fit/html_report.h"
+#include "dem/page/html_report.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "dem/scene/error.h"
-#include "fit/svg_chart.h"
+#include "dem/base/error.h"
+#include "dem/page/svg_chart.h"
 
 namespace granrad {
 namespace {

@@ -6,9 +6,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "dem/scene/error.h"
-#include "dem/scene/import_stl.h"
-#include "dem/scene/snapshot.h"
+#include "dem/base/error.h"
+#include "dem/io/import_stl.h"
+#include "dem/io/snapshot.h"
+#include "tests/source_dir.h"
 #include "tests/temporary_folder.h"
 
 namespace granrad {
@@ -159,8 +160,7 @@ TEST_F(Import, BadDumpsAreRefused) {
 }
 
 TEST_F(Import, TheReferenceDumpIsRead) {
-  const Bed bed =
-      read_snapshot(std::string(GRANRAD_SOURCE_DIR) + "/data/reference/snapshot_outlet_4x4.dump", 4e-4).bed;
+  const Bed bed = read_snapshot(granrad::source_dir() + "/data/reference/snapshot_outlet_4x4.dump", 4e-4).bed;
   EXPECT_EQ(bed.size(), 10376u);
   EXPECT_EQ(bed.step, 130000);
   EXPECT_EQ(bed.radius_m[0], 4e-4);

@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <limits>
 
-#include "dem/scene/error.h"
-#include "raytrace/line_kernel.h"
-#include "raytrace/line_plan.h"
+#include "dem/base/error.h"
+#include "raytrace/line_pass/line_kernel.h"
+#include "raytrace/lines/line_plan.h"
 #include "tests/line_cases.h"
 
 namespace granrad {

@@ -1,6 +1,6 @@
 // All pairs of surfaces within a gap are found, each once, sorted, with their exact distances: against brute
 // force.
-#include "dem/near_pairs.h"
+#include "dem/bed/near_pairs.h"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -8,9 +8,9 @@
 #include <cmath>
 #include <limits>
 
-#include "dem/scene/error.h"
-#include "dem/scene/random.h"
-#include "dem/scene/wall_distance.h"
+#include "dem/base/error.h"
+#include "dem/base/random.h"
+#include "dem/bed/wall_distance.h"
 
 namespace granrad {
 namespace {

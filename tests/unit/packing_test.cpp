@@ -2,15 +2,15 @@
 // same for the same seed, periodic or walled, of one or several sizes, and refuses with advice what cannot be
 // packed. Planted errors seen to fail here: nearest image left out of the minimisation (Periodic...), walls
 // stiffened without the radius (Walled...), random numbers keyed without the seed (Seeded).
-#include "dem/packing.h"
+#include "dem/packing/packing.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "dem/scene/constants.h"
-#include "dem/scene/error.h"
+#include "dem/base/constants.h"
+#include "dem/base/error.h"
 
 namespace granrad {
 namespace {

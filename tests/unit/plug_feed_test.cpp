@@ -5,8 +5,8 @@
 // part of the tape not in the saved state. Blind to: the tape shaken up to its used end (too rare a touch).
 #include <gtest/gtest.h>
 
-#include "dem/feed.h"
-#include "dem/scene/error.h"
+#include "dem/base/error.h"
+#include "dem/feed/feed.h"
 #include "tests/feed_scenes.h"
 
 namespace granrad {

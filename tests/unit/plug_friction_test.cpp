@@ -1,7 +1,7 @@
 // Requirement: the expected loss of speed by wall friction follows its formula in the limits: none without
 // friction or transverse motion, linear in age before cooling, bounded after it, and its mean is the integral
 // of the loss.
-#include "dem/plug_friction.h"
+#include "dem/feed/plug_friction.h"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "dem/scene/error.h"
-#include "dem/scene/snapshot.h"
+#include "dem/base/error.h"
+#include "dem/io/snapshot.h"
+#include "tests/source_dir.h"
 #include "tests/temporary_folder.h"
 
 namespace granrad {
@@ -140,7 +141,7 @@ TEST(Scene, TheBoxIsDerivedFromPolygonsAndMeshes) {
 
 TEST(Scene, ShippedMaterialsAreThePapers) {
   for (const char* name : {"alumina", "mustard_seed"}) {
-    const std::string file = std::string(GRANRAD_SOURCE_DIR) + "/data/materials/" + name + ".toml";
+    const std::string file = granrad::source_dir() + "/data/materials/" + name + ".toml";
     const Scene s =
         parse(general + "[material]\nfile = '" + file + "'\nfriction = 0.3\n" + particles + box + plug);
     const Material& m = s.materials[0];

@@ -1,5 +1,5 @@
 // Requirement: the effective scene shows numbers as a person would write them, and reads back to the same bits.
-#include "dem/scene/shortest_numbers.h"
+#include "dem/base/shortest_numbers.h"
 
 #include <gtest/gtest.h>
 
@@ -15,8 +15,8 @@ TEST(ShortestNumbers, FewestDigitsThatReadBack) {
 }
 
 TEST(ShortestNumbers, LeavesTheRestAlone) {
-  for (const char* text : {"name = 'bed 0.0040000000000000001'", "file = \"x 1.50\"", "n = 10000", "on = true",
-                           "day = 2024-05-01", "[walls.x_min]\nrole = 'open'"})
+  for (const char* text : {"name = 'bed 0.0040000000000000001'", "file = \"x 1.50\"", "n = 10000",
+                           "on = true", "day = 2024-05-01", "[walls.x_min]\nrole = 'open'"})
     EXPECT_EQ(with_shortest_numbers(text), text);
 }
 

@@ -1,13 +1,13 @@
 // What the user wrote is read with its units, and every problem is reported at its place, all at once.
-#include "dem/scene/toml_reader.h"
+#include "dem/base/toml_reader.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 
-#include "dem/scene/error.h"
-#include "dem/scene/suggestion.h"
+#include "dem/base/error.h"
+#include "dem/base/suggestion.h"
 #include "tests/temporary_folder.h"
 
 namespace granrad {

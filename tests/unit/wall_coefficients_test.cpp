@@ -1,5 +1,5 @@
 // Requirement: h_wp, Nu and Peclet numbers are those of the paper's equations.
-#include "coupling/wall_coefficients.h"
+#include "coupling/heat/wall_coefficients.h"
 
 #include <gtest/gtest.h>
 

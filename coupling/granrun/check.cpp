@@ -1,0 +1,147 @@
+#include "coupling/granrun/check.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "coupling/simulation/radiation_source.h"
+#include "coupling/simulation/simulation.h"
+#include "dem/base/error.h"
+
+namespace granrad {
+
+namespace {
+
+struct Verdict {
+  std::vector<std::string> modelled, left_out;
+  void say(bool is_modelled, const std::string& yes, const std::string& no) {
+    (is_modelled ? modelled : left_out).push_back(is_modelled ? yes : no);
+  }
+};
+
+bool has_role(const Scene& scene, WallRole role) {
+  for (const Wall& wall : scene.walls)
+    if (wall.role == role) return true;
+  return false;
+}
+
+bool is_black(const Case& c) {
+  for (const Material& material : c.flow.materials)
+    if (material.emissivity < 1) return false;
+  for (const Wall& wall : c.flow.walls)
+    if (wall.role == WallRole::adiabatic || (wall.role == WallRole::isothermal && wall.emissivity < 1))
+      return false;
+  return true;
+}
+
+std::string names_of(const Scene& scene, WallRole role) {
+  std::string names;
+  for (const Wall& wall : scene.walls)
+    if (wall.role == role) names += (names.empty() ? "" : ", ") + wall.name;
+  return names;
+}
+
+void judge_flow(const Case& c, Verdict& verdict) {
+  const Scene& scene = c.flow;
+  const bool moves = scene.engine != EngineKind::none;
+  const char* engine = scene.engine == EngineKind::liggghts ? "LIGGGHTS" : "native DEM engine";
+  verdict.say(moves,
+              fmt::format("flow: {}, Hertz-Mindlin contacts with history{}", engine,
+                          scene.precision == Precision::mixed ? ", their law in single precision" : ""),
+              "flow: dem.engine = \"none\", the bed is frozen");
+  if (!moves) return;
+  verdict.say(norm(scene.gravity_m_s2) > 0, fmt::format("gravity {:g} m/s2", norm(scene.gravity_m_s2)),
+              "gravity: scene.gravity_m_s2 is 0");
+  verdict.say(scene.feed.kind != FeedSettings::Kind::none, "feed: particles enter and leave",
+              "feed: no [feed], the particles stay the same");
+  bool friction = false, rolling = false;
+  for (const Material& material : scene.materials) {
+    friction = friction || material.friction > 0;
+    rolling = rolling || material.rolling_friction > 0;
+  }
+  verdict.say(friction, "sliding friction", "sliding friction: material.friction is 0");
+  verdict.say(rolling, "rolling friction", "rolling friction: material.rolling_friction is 0");
+}
+
+void judge_conduction(const Case& c, Verdict& verdict) {
+  const auto& conduction = c.heat.conduction;
+  verdict.say(conduction.solid,
+              fmt::format("conduction through contacts, modulus exponent {:g}", conduction.modulus_exponent),
+              "conduction through contacts: conduction.solid = false");
+  verdict.say(conduction.gas.has_value(),
+              conduction.gas
+                  ? fmt::format("conduction through gas lenses of {:g} radii, {:g} W/mK",
+                                conduction.gas->lens_radius_ratio, conduction.gas->conductivity_W_mK)
+                  : "",
+              "conduction through gas: no [gas]; no lens pairs are searched");
+}
+
+void judge_radiation(const Case& c, Verdict& verdict) {
+  const auto& radiation = c.heat.radiation;
+  const bool on = radiation.kind != RadiationKind::none;
+  verdict.say(on, "radiation: " + describe(radiation),
+              "radiation: no [radiation] or source = \"none\"; no enclosure is built");
+  if (!on) return;
+  if (radiation.kind != RadiationKind::paths)
+    verdict.say(!is_black(c), "radiosity solve (grey or re-radiating surfaces)",
+                "radiosity solve: every surface is black");
+  if (c.flow.engine == EngineKind::none && radiation.kind != RadiationKind::paths)
+    verdict.left_out.push_back("new view factors per update: the bed is frozen, they are found once");
+  for (WallRole role : {WallRole::isothermal, WallRole::adiabatic, WallRole::open, WallRole::excluded})
+    if (has_role(c.flow, role))
+      verdict.modelled.push_back(fmt::format("walls {}: {}", to_string(role), names_of(c.flow, role)));
+  verdict.say(has_role(c.flow, WallRole::isothermal), "wall-to-particle coefficients",
+              "wall-to-particle coefficients: no isothermal wall");
+}
+
+std::string seconds(double value) {
+  return std::isfinite(value) ? fmt::format("{:.4g} s", value) : "none";
+}
+
+void print_limits(const Simulation& simulation) {
+  const auto& limits = simulation.limits();
+  const auto& plan = simulation.plan();
+  fmt::print("\nstep limits\n");
+  if (std::isfinite(limits.dem_s))
+    fmt::print(
+        "  Rayleigh time               {}   step allowed: 0.3 of it\n"
+        "  Hertz time at {:.3g} m/s    {}   step allowed: 0.1 of it\n"
+        "  DEM step                    {}   largest allowed {}\n",
+        seconds(limits.rayleigh_time_s), limits.impact_speed_m_s, seconds(limits.hertz_time_s),
+        seconds(plan.step_s), seconds(limits.dem_s));
+  fmt::print("  heat step                   {}   conduction allows {} for the bed at time 0\n",
+             seconds(plan.tick_s), seconds(simulation.conduction_limit_s()));
+  if (plan.ticks_per_radiation > 0)
+    fmt::print("  radiation update            {}   largest allowed {}; following the motion asks {}\n",
+               seconds(plan.tick_s * static_cast<double>(plan.ticks_per_radiation)),
+               seconds(limits.radiation_s), seconds(limits.motion_s));
+  if (std::isfinite(limits.dem_s)) fmt::print("  {} DEM steps per heat step\n", plan.steps_per_tick);
+  fmt::print("  {} heat steps in {}{}\n", plan.end_tick, seconds(plan.time_s(plan.end_tick)),
+             plan.cuts(plan.end_tick) ? ", the last one cut short" : "");
+}
+
+}  // namespace
+
+int check_case(const Case& c, const RunOptions& options) {
+  Simulation simulation(c, options.threads);
+  simulation.start();
+  if (!options.quiet()) fmt::print("# the scene in force\n{}\n", c.effective_text);
+  Verdict verdict;
+  judge_flow(c, verdict);
+  judge_conduction(c, verdict);
+  judge_radiation(c, verdict);
+  fmt::print("modelled\n");
+  for (const auto& text : verdict.modelled) fmt::print("  {}\n", text);
+  fmt::print("left out\n");
+  for (const auto& text : verdict.left_out) fmt::print("  {}\n", text);
+  print_limits(simulation);
+  if (const auto note = end_note(simulation.plan(), c.flow.end_time_s); !note.empty())
+    fmt::print("  note: {}\n", note);
+  fmt::print("\n{} particles at time 0, solid fraction {:.4f} in the region\n", simulation.bed().size(),
+             solid_fraction(simulation.bed(), c.flow.region));
+  return exit_ok;
+}
+
+}  // namespace granrad

@@ -1,0 +1,11 @@
+#pragma once
+#include "coupling/granrun/run_options.h"
+#include "coupling/simulation/heat_scene.h"
+
+namespace granrad {
+
+/// Prints the scene in force, every step limit with its value, what will be modelled, and what was left out
+/// and why. Throws InputError with every problem found.
+int check_case(const Case& c, const RunOptions& options);
+
+}  // namespace granrad

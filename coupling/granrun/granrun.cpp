@@ -1,0 +1,123 @@
+#include <fmt/core.h>
+#include <omp.h>
+
+#include <CLI/CLI.hpp>
+
+#include "coupling/granrun/case_report.h"
+#include "coupling/granrun/check.h"
+#include "coupling/granrun/export.h"
+#include "coupling/granrun/run.h"
+#include "coupling/granrun/sweep.h"
+#include "coupling/granrun/validate.h"
+#include "dem/base/error.h"
+#include "dem/base/program.h"
+
+namespace {
+
+using namespace granrad;
+
+struct Arguments {
+  std::string scene, folder, format, walltime;
+  std::vector<std::string> overrides;
+  RunOptions options;
+  bool quiet = false, verbose = false;
+};
+
+double seconds_of(const std::string& walltime) {
+  int hours = 0, minutes = 0, seconds = 0;
+  char rest = 0;
+  if (std::sscanf(walltime.c_str(), "%d:%2d:%2d%c", &hours, &minutes, &seconds, &rest) != 3 || hours < 0 ||
+      minutes < 0 || minutes > 59 || seconds < 0 || seconds > 59)
+    throw InputError(fmt::format("--walltime = {} (must be HH:MM:SS) try 00:30:00", walltime));
+  return 3600.0 * hours + 60.0 * minutes + seconds;
+}
+
+void add_common(CLI::App* command, Arguments& a) {
+  command->add_option("--threads", a.options.threads, "threads; results do not depend on it")
+      ->check(CLI::Range(1, 4096));
+  auto* quiet = command->add_flag("-q,--quiet", a.quiet, "errors only");
+  command->add_flag("-v,--verbose", a.verbose, "more on stderr")->excludes(quiet);
+}
+
+void add_scene(CLI::App* command, Arguments& a) {
+  command->add_option("SCENE", a.scene, "scene file (TOML)")->required();
+  command->add_option("--set", a.overrides, "override a scene value, e.g. --set radiation.rays=1000")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  add_common(command, a);
+}
+
+void add_output(CLI::App* command, Arguments& a) {
+  command->add_option("-o,--output", a.folder, "folder for the results")->required()->type_name("DIR");
+}
+
+void add_stopping(CLI::App* command, Arguments& a) {
+  command->add_option("--walltime", a.walltime, "save a checkpoint and exit 75 after HH:MM:SS");
+}
+
+void apply(Arguments& a) {
+  if (a.quiet) a.options.verbosity = Verbosity::quiet;
+  if (a.verbose) a.options.verbosity = Verbosity::verbose;
+  if (!a.walltime.empty()) a.options.walltime_s = seconds_of(a.walltime);
+  if (a.options.threads > 0) omp_set_num_threads(a.options.threads);
+}
+
+int granrun(int argc, char** argv) {
+  CLI::App app{"granrun: granular flows heated by conduction and radiation"};
+  app.set_version_flag("--version", fmt::format("granrun {} ({})", program_version(), program_git_sha()));
+  app.require_subcommand(1);
+  app.footer(
+      "Exit codes: 0 ok, 1 numerical failure, 2 usage or input, 3 file cannot be read or written,\n"
+      "4 threshold missed, 75 wall time reached (checkpoint saved), 130/143 interrupted (checkpoint saved)");
+  Arguments a;
+
+  auto* run = app.add_subcommand("run", "run a scene");
+  add_scene(run, a);
+  add_output(run, a);
+  add_stopping(run, a);
+  run->add_flag("--resume", a.options.resume, "continue from the last whole frame in DIR");
+
+  auto* check =
+      app.add_subcommand("check", "validate a scene; print limits, what is modelled and what is not");
+  add_scene(check, a);
+
+  auto* validate = app.add_subcommand("validate", "compare exchange sources on a frozen bed");
+  add_scene(validate, a);
+  add_output(validate, a);
+
+  auto* sweep = app.add_subcommand("sweep", "parameter study; resumable");
+  sweep->add_option("SWEEP", a.scene, "sweep file (TOML)")->required();
+  add_output(sweep, a);
+  add_stopping(sweep, a);
+  bool list_only = false;
+  sweep->add_flag("--list", list_only, "write the cases and jobs.txt, run nothing");
+  add_common(sweep, a);
+
+  auto* report = app.add_subcommand("report", "HTML report of a finished or running case");
+  report->add_option("DIR", a.folder, "folder of a case")->required();
+  add_common(report, a);
+
+  auto* exporter = app.add_subcommand("export", "frames for OVITO and other tools, into DIR/export");
+  exporter->add_option("DIR", a.folder, "folder of a case")->required();
+  exporter->add_option("--to", a.format, "vtp or dump")->required()->check(CLI::IsMember({"vtp", "dump"}));
+  add_common(exporter, a);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? exit_ok : exit_bad_input;
+  }
+  apply(a);
+  if (*run) return run_case(read_case(a.scene, a.overrides), a.folder, a.options);
+  if (*check) return check_case(read_case(a.scene, a.overrides), a.options);
+  if (*validate) return validate_case(read_case(a.scene, a.overrides), a.folder, a.options);
+  if (*sweep) return run_sweep(a.scene, a.folder, list_only, a.options);
+  if (*report) return report_case(a.folder, a.options);
+  return export_case(a.folder, a.format, a.options);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return run_program("granrun", [&] { return granrun(argc, argv); });
+}

@@ -1,0 +1,105 @@
+#include "coupling/heat/conduction.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "coupling/heat/contact_conductance.h"
+#include "coupling/heat/gas_lens.h"
+#include "dem/base/error.h"
+
+namespace granrad {
+
+double lens_cutoff_gap_m(const ConductionSettings& settings, double max_radius_m) {
+  return settings.gas ? (settings.gas->lens_radius_ratio - 1) * max_radius_m : 0;
+}
+
+namespace {
+
+void require_contact_properties(const std::vector<Material>& materials) {
+  std::vector<std::string> problems;
+  for (const auto& m : materials) {
+    const auto need = [&](const char* what, double value) {
+      if (!(value > 0))
+        problems.push_back(fmt::format("{}.{} = {} (must be positive for conduction through contacts)",
+                                       m.name, what, value));
+    };
+    need("conductivity_W_mK", m.conductivity_W_mK);
+    need("youngs_modulus_Pa", m.youngs_modulus_Pa);
+    need("real_youngs_modulus_Pa", m.real_youngs_modulus_Pa);
+  }
+  if (!problems.empty()) throw InputError(problems);
+}
+
+/// Contact conductivities of every two materials, W/(m K).
+class ContactTable {
+ public:
+  ContactTable(const std::vector<Material>& materials, const ConductionSettings& settings)
+      : count_(materials.size()), value_(count_ * count_, 0.0) {
+    if (!settings.solid) return;
+    require_contact_properties(materials);
+    for (std::size_t a = 0; a < count_; ++a)
+      for (std::size_t b = 0; b < count_; ++b)
+        value_[a * count_ + b] =
+            contact_conductivity_W_mK(materials[a], materials[b], settings.modulus_exponent);
+  }
+  double operator()(std::int32_t a, std::int32_t b) const { return value_[a * count_ + b]; }
+
+ private:
+  std::size_t count_;
+  std::vector<double> value_;
+};
+
+double gas_conductance(const std::optional<GasLens>& gas, double ri, double rj, double distance) {
+  if (!gas) return 0;
+  if (ri != rj)
+    return gas->conductivity_W_mK * lens_m(ri, rj, distance, gas->minimum_gap_m, gas->lens_radius_ratio);
+  const double half_overlap = (ri - distance / 2) / ri, half_gap = gas->minimum_gap_m / (2 * ri);
+  return gas->conductivity_W_mK * ri * pair_lens(half_overlap, half_gap, gas->lens_radius_ratio);
+}
+
+double gas_conductance_to_wall(const std::optional<GasLens>& gas, double radius, double distance) {
+  if (!gas) return 0;
+  return gas->conductivity_W_mK * radius *
+         wall_lens((radius - distance) / radius, gas->minimum_gap_m / radius, gas->lens_radius_ratio);
+}
+
+template <class Entry>
+void drop_empty(std::vector<Entry>& entries) {
+  std::erase_if(entries, [](const Entry& e) { return e.solid_W_K == 0 && e.gas_W_K == 0; });
+}
+
+}  // namespace
+
+Conductances conductances(const Bed& bed, const NearPairs& pairs, const ConductionSettings& settings,
+                          const std::vector<char>& in_region) {
+  const ContactTable contact(bed.materials, settings);
+  const auto inside = [&](std::int32_t i) { return in_region.empty() || in_region[i]; };
+
+  Conductances result;
+  result.particles.resize(pairs.particles.size());
+#pragma omp parallel for schedule(static) if (pairs.particles.size() >= 1000)
+  for (std::size_t k = 0; k < pairs.particles.size(); ++k) {
+    const auto [i, j, distance] = pairs.particles[k];
+    PairConductance& g = result.particles[k] = {i, j, 0, 0};
+    if (!inside(i) || !inside(j)) continue;
+    const double ri = bed.radius_m[i], rj = bed.radius_m[j];
+    g.solid_W_K = contact(bed.material[i], bed.material[j]) * std::sqrt(contact_area_m2(ri, rj, distance));
+    g.gas_W_K = gas_conductance(settings.gas, ri, rj, distance);
+  }
+  drop_empty(result.particles);
+
+  result.walls.resize(pairs.walls.size());
+  for (std::size_t k = 0; k < pairs.walls.size(); ++k) {
+    const auto [i, wall, distance] = pairs.walls[k];
+    WallConductance& g = result.walls[k] = {i, wall, 0, 0};
+    if (!inside(i) || bed.walls[wall].role != WallRole::isothermal) continue;
+    const double r = bed.radius_m[i];
+    g.solid_W_K = contact(bed.material[i], bed.material[i]) * std::sqrt(wall_contact_area_m2(r, distance));
+    g.gas_W_K = gas_conductance_to_wall(settings.gas, r, distance);
+  }
+  drop_empty(result.walls);
+  return result;
+}
+
+}  // namespace granrad

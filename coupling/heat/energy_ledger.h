@@ -1,0 +1,47 @@
+#pragma once
+#include "coupling/heat/heat_step.h"
+#include "dem/io/snapshot.h"
+
+namespace granrad {
+
+/// A sum that remembers what rounding took (Neumaier): its error does not grow with the number of terms.
+class CompensatedSum {
+ public:
+  void add(double term);
+  double value() const { return sum_ + lost_; }
+  double sum() const { return sum_; }
+  double lost() const { return lost_; }
+  static CompensatedSum restored(double sum, double lost);
+
+ private:
+  double sum_ = 0, lost_ = 0;
+};
+
+/// Energy received against energy stored, from time 0. The two sides are computed apart: `received` from the
+/// heats of every step, `stored` from the temperatures, so their difference checks the whole chain.
+class EnergyLedger {
+ public:
+  /// Opens the books on the bed at time 0.
+  void start(const Bed& bed);
+  /// Books the heat one step brought (result of advance_temperatures), J.
+  void receive(const HeatPaths& heat_J);
+  /// Heat the radiating walls gave and no particle got, J: W left over by the exchange source times the step.
+  /// 0 for conserving sources; row_sum closure and net sinks show here and hence in the defect.
+  void miss(double heat_J);
+
+  HeatPaths received_J() const;
+  /// sum m c T now, minus at time 0, minus brought in by the feed, plus carried out with removed particles.
+  double stored_J(const Bed& bed, double feed_in_J, double feed_out_J) const;
+  /// |stored - received - missed| / |received|; relative to the energy of the bed where hardly any was
+  /// received (below 1e-12 of it); 0 when nothing moved.
+  double relative_defect(const Bed& bed, double feed_in_J, double feed_out_J) const;
+
+  StateBlock save() const;
+  void load(const StateBlock& block);  ///< throws InputError when a column is missing
+
+ private:
+  double energy_at_start_J_ = 0;
+  CompensatedSum solid_, gas_, radiation_, missed_;
+};
+
+}  // namespace granrad

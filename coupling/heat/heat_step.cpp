@@ -1,0 +1,123 @@
+#include "coupling/heat/heat_step.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "coupling/heat/energy_ledger.h"
+#include "dem/base/constants.h"
+#include "dem/base/error.h"
+
+namespace granrad {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+double heat_capacity_J_K(const Bed& bed, std::size_t i) {
+  return mass_kg(bed, i) * bed.materials[bed.material[i]].specific_heat_J_kgK;
+}
+
+/// 4 eps sigma T^3 A, W/K.
+double emission_slope(const Bed& bed, std::size_t i, double temperature_K) {
+  const double area = 4 * pi * bed.radius_m[i] * bed.radius_m[i];
+  return 4 * bed.materials[bed.material[i]].emissivity * emissive_power(temperature_K) / temperature_K * area;
+}
+
+/// Heat into every particle, W, and what walls give, from the temperatures at the start of the step.
+HeatPaths collect_heats(const Bed& bed, const Conductances& conductances, std::vector<double>& heat_W) {
+  const auto& T = bed.temperature_K;
+  for (const auto& g : conductances.particles) {
+    const double q = (g.solid_W_K + g.gas_W_K) * (T[g.j] - T[g.i]);
+    heat_W[g.i] += q;
+    heat_W[g.j] -= q;
+  }
+  CompensatedSum solid, gas, radiation;
+  for (const auto& g : conductances.walls) {
+    const double difference = bed.walls[g.wall].temperature_K - T[g.i];
+    heat_W[g.i] += (g.solid_W_K + g.gas_W_K) * difference;
+    solid.add(g.solid_W_K * difference);
+    gas.add(g.gas_W_K * difference);
+  }
+  for (std::size_t i = 0; i < bed.size(); ++i) {
+    heat_W[i] += bed.radiative_heat_W[i];
+    radiation.add(bed.radiative_heat_W[i]);
+  }
+  return {solid.value(), gas.value(), radiation.value()};
+}
+
+}  // namespace
+
+double conduction_step_limit_s(const Bed& bed, const Conductances& conductances) {
+  std::vector<double> sum(bed.size(), 0.0);
+  for (const auto& g : conductances.particles) {
+    sum[g.i] += g.solid_W_K + g.gas_W_K;
+    sum[g.j] += g.solid_W_K + g.gas_W_K;
+  }
+  for (const auto& g : conductances.walls) sum[g.i] += g.solid_W_K + g.gas_W_K;
+  double limit = infinity;
+  for (std::size_t i = 0; i < bed.size(); ++i)
+    if (sum[i] > 0) limit = std::min(limit, conduction_step_fraction * heat_capacity_J_K(bed, i) / sum[i]);
+  return limit;
+}
+
+double radiation_time_constant_s(const Bed& bed) {
+  double hottest = 0;
+  for (double T : bed.temperature_K) hottest = std::max(hottest, T);
+  for (const auto& wall : bed.walls)
+    if (wall.role == WallRole::isothermal || wall.role == WallRole::open)
+      hottest = std::max(hottest, wall.temperature_K);
+  double shortest = infinity;
+  for (std::size_t i = 0; i < bed.size(); ++i)
+    shortest = std::min(shortest, heat_capacity_J_K(bed, i) / emission_slope(bed, i, hottest));
+  return shortest;
+}
+
+HeatPaths advance_temperatures(Bed& bed, const Conductances& conductances, double dt_s) {
+  const double limit = conduction_step_limit_s(bed, conductances);
+  if (dt_s > limit)
+    throw NumericalError(
+        fmt::format("conduction step = {:.4g} s (dt sum(G)/(m c) beyond {}); largest allowed: {:.4g} s", dt_s,
+                    conduction_step_fraction, limit));
+  std::vector<double> heat_W(bed.size(), 0.0);
+  HeatPaths received = collect_heats(bed, conductances, heat_W);
+  for (std::size_t i = 0; i < bed.size(); ++i) {
+    double& T = bed.temperature_K[i];
+    T += dt_s * heat_W[i] / heat_capacity_J_K(bed, i);
+    if (!(T > 0 && T < infinity))
+      throw NumericalError(fmt::format(
+          "temperature of particle {} = {} K after a heat step of {:.4g} s with {:.4g} W; shorten the "
+          "radiation interval (time constant {:.4g} s)",
+          bed.id[i], T, dt_s, heat_W[i],
+          heat_capacity_J_K(bed, i) / emission_slope(bed, i, std::max(1.0, bed.temperature_K[i]))));
+  }
+  received.solid *= dt_s;
+  received.gas *= dt_s;
+  received.radiation *= dt_s;
+  return received;
+}
+
+std::vector<double> midway_temperatures_K(const Bed& bed, double interval_s) {
+  auto midway = bed.temperature_K;
+  for (std::size_t i = 0; i < bed.size(); ++i)
+    midway[i] += bed.radiative_heat_W[i] * interval_s / (2 * heat_capacity_J_K(bed, i));
+  return midway;
+}
+
+double thermal_energy_J(const Bed& bed) {
+  CompensatedSum sum;
+  for (std::size_t i = 0; i < bed.size(); ++i) sum.add(heat_capacity_J_K(bed, i) * bed.temperature_K[i]);
+  return sum.value();
+}
+
+double mean_temperature_K(const Bed& bed, const std::vector<char>& in_region) {
+  CompensatedSum sum;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < bed.size(); ++i)
+    if (in_region.empty() || in_region[i]) sum.add(bed.temperature_K[i]), ++count;
+  return count ? sum.value() / count : 0;
+}
+
+}  // namespace granrad

@@ -1,0 +1,36 @@
+#pragma once
+#include <memory>
+
+#include "coupling/simulation/time_plan.h"
+#include "dem/engine.h"
+#include "dem/feed/feed.h"
+
+namespace granrad {
+
+/// What moves the bed in a run: feed and engine, or nothing (a frozen bed).
+class Flow {
+ public:
+  explicit Flow(const Scene& scene, int threads = 0);
+  /// The bed at time 0: particles of the scene's file, filled by the feed.
+  Bed first_bed();
+
+  /// Feeds, then moves to the end of `tick`. Throws NumericalError.
+  void advance(Bed& bed, const TimePlan& plan, std::int64_t tick);
+  /// Pairs within the gap, from the engine's own list; found once in a frozen bed.
+  const NearPairs& near_pairs(const Bed& bed, double max_gap_m);
+  bool moves() const { return scene_.engine != EngineKind::none; }
+
+  FeedTotals totals() const { return feed_ ? feed_->totals() : FeedTotals{}; }
+  StateBlock save() const { return feed_ ? feed_->save() : StateBlock{}; }
+  void load(const StateBlock& state);
+
+ private:
+  const Scene& scene_;
+  int threads_;
+  std::unique_ptr<Feed> feed_;
+  std::unique_ptr<Engine> engine_;  ///< made at the first advance, when the bed is known
+  NearPairs pairs_;
+  bool pairs_known_ = false;
+};
+
+}  // namespace granrad

@@ -1,0 +1,120 @@
+#include "coupling/simulation/heat_model.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "coupling/heat/heat_step.h"
+#include "coupling/simulation/radiation_source.h"
+#include "dem/base/constants.h"
+#include "dem/base/error.h"
+
+namespace granrad {
+
+namespace {
+
+double sum(const std::vector<double>& values) {
+  CompensatedSum total;
+  for (double value : values) total.add(value);
+  return total.value();
+}
+
+double surroundings_K(const Scene& scene) {
+  for (const Wall& wall : scene.walls)
+    if (wall.role == WallRole::open) return wall.temperature_K;
+  return scene.particle_temperature_K;
+}
+
+}  // namespace
+
+HeatModel::HeatModel(const Case& c, int threads) : case_(c), threads_(threads) {}
+
+const Conductances& HeatModel::conduct(const Bed& bed, Flow& flow) {
+  const ConductionSettings& settings = case_.heat.conduction;
+  if (!settings.solid && !settings.gas) return conductances_;
+  if (conductances_known_ && !flow.moves()) return conductances_;
+  const double largest = bed.size() ? *std::max_element(bed.radius_m.begin(), bed.radius_m.end()) : 0;
+  conductances_ = conductances(bed, flow.near_pairs(bed, lens_cutoff_gap_m(settings, largest)), settings,
+                               in_region(bed, case_.flow.region));
+  conductances_known_ = true;
+  return conductances_;
+}
+
+HeatModel::ParticleHeat HeatModel::draw_radiation(const Bed& bed, std::uint64_t draw) {
+  const Enclosure enclosure = make_enclosure(bed, case_.flow.region);
+  if (!source_) source_ = make_radiation_source(case_.heat.radiation, case_.flow, threads_);
+  const RadiativeState state = radiative_state(bed, enclosure, surroundings_K(case_.flow));
+  ParticleHeat result;
+  result.all = source_->net_heat(enclosure, state, draw);
+  const auto to_particles = [&](const std::vector<double>& by_surface) {
+    std::vector<double> by_particle(by_surface.empty() ? 0 : bed.size(), 0.0);
+    for (std::size_t k = 0; k < enclosure.particle.size() && !by_surface.empty(); ++k)
+      by_particle[enclosure.particle[k]] = by_surface[k];
+    return by_particle;
+  };
+  result.heat_W = to_particles(result.all.heat_W);
+  result.standard_error_W = to_particles(result.all.standard_error_W);
+  for (std::size_t i = 0; i < bed.size(); ++i)
+    if (!std::isfinite(result.heat_W[i]))
+      throw NumericalError(
+          fmt::format("radiative heat of particle {} is not a number at {:g} s", bed.id[i], bed.time_s));
+  return result;
+}
+
+void HeatModel::radiate(Bed& bed) {
+  // heats of the temperatures the bed will have midway: second order in the interval, see heat_step.h
+  auto temperature_K = midway_temperatures_K(bed, case_.heat.radiation.every_s);
+  bed.temperature_K.swap(temperature_K);
+  auto drawn = draw_radiation(bed, static_cast<std::uint64_t>(radiation_.updates));
+  bed.temperature_K.swap(temperature_K);
+  const RadiativeHeat& heat = drawn.all;
+  bed.radiative_heat_W = std::move(drawn.heat_W);
+  radiation_.updates += 1;
+  radiation_.rays += heat.rays;
+  radiation_.wall_heat_W = heat.isothermal_wall_heat_W;
+  radiation_.missed_W = -sum(heat.heat_W);
+  radiation_.error_squared_W2 += heat.isothermal_wall_heat_error_W * heat.isothermal_wall_heat_error_W;
+  radiation_.closure_correction = std::max(radiation_.closure_correction, heat.closure_correction);
+}
+
+void HeatModel::advance(Bed& bed, double dt_s) {
+  ledger_.receive(advance_temperatures(bed, conductances_, dt_s));
+  ledger_.miss(radiation_.missed_W * dt_s);
+}
+
+StateBlock HeatModel::save() const {
+  StateBlock block;
+  block.integers["updates"] = {radiation_.updates};
+  block.integers["rays"] = {radiation_.rays};
+  block.reals["wall_heat_W"] = {radiation_.wall_heat_W};
+  block.reals["missed_W"] = {radiation_.missed_W};
+  block.reals["error_squared_W2"] = {radiation_.error_squared_W2};
+  block.reals["closure_correction"] = {radiation_.closure_correction};
+  return block;
+}
+
+void HeatModel::load(const StateBlock& radiation, const StateBlock& ledger) {
+  radiation_.updates = radiation.integers.at("updates").at(0);
+  radiation_.rays = radiation.integers.at("rays").at(0);
+  radiation_.wall_heat_W = radiation.reals.at("wall_heat_W").at(0);
+  radiation_.missed_W = radiation.reals.at("missed_W").at(0);
+  radiation_.error_squared_W2 = radiation.reals.at("error_squared_W2").at(0);
+  radiation_.closure_correction = radiation.reals.at("closure_correction").at(0);
+  ledger_.load(ledger);
+}
+
+std::vector<char> in_region(const Bed& bed, const Box& region) {
+  std::vector<char> inside(bed.size());
+  for (std::size_t i = 0; i < bed.size(); ++i) inside[i] = region.contains(bed.position_m[i]);
+  return inside;
+}
+
+double solid_fraction(const Bed& bed, const Box& region) {
+  double volume = 0;
+  for (std::size_t i = 0; i < bed.size(); ++i)
+    if (region.contains(bed.position_m[i])) volume += 4.0 / 3 * pi * std::pow(bed.radius_m[i], 3);
+  return region.volume() > 0 ? volume / region.volume() : 0;
+}
+
+}  // namespace granrad

@@ -1,0 +1,65 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "coupling/heat/energy_ledger.h"
+#include "coupling/simulation/flow.h"
+#include "coupling/simulation/heat_scene.h"
+#include "raytrace/exchange_source.h"
+
+namespace granrad {
+
+/// Sums over radiation updates, for standard errors and the closure of the books.
+struct RadiationTotals {
+  std::int64_t updates = 0, rays = 0;
+  double wall_heat_W = 0;         ///< given by isothermal and open walls at the last update
+  double missed_W = 0;            ///< given by walls and got by no particle, held until the next update
+  double error_squared_W2 = 0;    ///< sum over updates of the squared standard error of the wall heat
+  double closure_correction = 0;  ///< largest so far
+};
+
+/// Heat of the bed: conduction and held radiation, one explicit step at a time, with its ledger. Builds only
+/// what the scene needs: without radiation no source, without gas and contacts no pairs.
+class HeatModel {
+ public:
+  HeatModel(const Case& c, int threads = 0);
+  /// Opens the books on the bed at time 0.
+  void start(const Bed& bed) { ledger_.start(bed); }
+
+  /// Conductances of the bed as it is; those of a frozen bed are kept. Empty when nothing conducts.
+  const Conductances& conduct(const Bed& bed, Flow& flow);
+  /// Net radiative heat of every particle into bed.radiative_heat_W, to be held until the next update.
+  void radiate(Bed& bed);
+  /// Net radiative heat of every particle of the bed as it is, W, and its standard error (empty: not known);
+  /// random numbers by `draw`. Changes nothing in the bed or the books. 0 for particles outside the region.
+  struct ParticleHeat {
+    std::vector<double> heat_W, standard_error_W;
+    RadiativeHeat all;  ///< by surface
+  };
+  ParticleHeat draw_radiation(const Bed& bed, std::uint64_t draw);
+  /// One heat step with what conduct and radiate found. Throws NumericalError.
+  void advance(Bed& bed, double dt_s);
+
+  const EnergyLedger& ledger() const { return ledger_; }
+  const RadiationTotals& radiation() const { return radiation_; }
+  StateBlock save() const;
+  StateBlock save_ledger() const { return ledger_.save(); }
+  void load(const StateBlock& radiation, const StateBlock& ledger);
+
+ private:
+  const Case& case_;
+  int threads_;
+  std::unique_ptr<ExchangeSource> source_;  ///< made at the first update
+  Conductances conductances_;
+  bool conductances_known_ = false;
+  EnergyLedger ledger_;
+  RadiationTotals radiation_;
+};
+
+/// 1 for the particles whose centre lies in `region`.
+std::vector<char> in_region(const Bed& bed, const Box& region);
+/// Volume of the particles whose centre lies in the region over its volume.
+double solid_fraction(const Bed& bed, const Box& region);
+
+}  // namespace granrad

@@ -1,0 +1,221 @@
+#include "coupling/simulation/heat_scene.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "dem/base/error.h"
+#include "dem/engine_liggghts.h"
+#include "fit/correlation/correlation.h"
+#include "raytrace/paths/path_tracer.h"
+
+namespace granrad {
+
+namespace {
+
+constexpr double default_walks = 10000;  // paths, per update: 1 % noise in the wall heat needs about 1300
+constexpr double default_rays_per_particle = 2000;
+constexpr double default_line_ends_per_particle = 24000;  // 500 directions; lines are far cheaper than rays
+
+constexpr double default_line_ends_for_moments = 4800;  // 100 directions in each replicate
+
+double default_rays(RadiationKind kind, int order) {
+  if (kind == RadiationKind::paths) return default_walks;
+  if (order > 0) return default_line_ends_for_moments;
+  return kind == RadiationKind::lines ? default_line_ends_per_particle : default_rays_per_particle;
+}
+
+RadiationKind kind_from(const std::string& name) {
+  for (auto kind :
+       {RadiationKind::paths, RadiationKind::embree, RadiationKind::lines, RadiationKind::correlation})
+    if (name == to_string(kind)) return kind;
+  return RadiationKind::none;
+}
+
+std::optional<GasLens> read_gas(TomlTable table) {
+  if (!table.present()) return {};
+  GasLens gas;
+  gas.conductivity_W_mK = table.number(
+      "conductivity_W_mK", {.unit = "W/(m K)", .min = 0, .min_exclusive = true}, gas.conductivity_W_mK);
+  gas.lens_radius_ratio =
+      table.number("lens_radius_ratio",
+                   {.min = 1, .max = 3, .min_exclusive = true, .why = "lens radius over particle radius"},
+                   gas.lens_radius_ratio);
+  gas.minimum_gap_m = table.number(
+      "minimum_gap_m",
+      {.unit = "m", .min = 0, .min_exclusive = true, .why = "the conductance of a closed gap is infinite"},
+      gas.minimum_gap_m);
+  return gas;
+}
+
+ConductionSettings read_conduction(TomlTable table) {
+  ConductionSettings conduction;
+  conduction.solid = table.boolean("solid", true);
+  conduction.modulus_exponent =
+      table.number("modulus_exponent", {.min = 0, .max = 1, .why = "1/5 collisions, 1/3 beds at rest"}, 0.2);
+  return conduction;
+}
+
+int read_conduction_interval(TomlTable table, const Scene& scene) {
+  if (!table.has("every_steps")) return 0;
+  if (scene.engine == EngineKind::none)
+    table.problem("every_steps", "has no meaning in a frozen bed (there are no DEM steps); leave it out");
+  return static_cast<int>(table.integer("every_steps", 1, 1000000));
+}
+
+void check_source_against_walls(TomlTable& table, RadiationKind kind, const Scene& scene) {
+  const std::string name = to_string(kind);
+  const bool needs_planes = kind == RadiationKind::lines || kind == RadiationKind::correlation;
+  if (kind == RadiationKind::correlation && (scene.periodic[0] || scene.periodic[1] || scene.periodic[2]))
+    table.problem("source",
+                  fmt::format("= {} (the box is periodic: this source needs walls all around); choose paths, "
+                              "embree or lines",
+                              name));
+  for (const Wall& wall : scene.walls) {
+    if (wall.role == WallRole::excluded && kind == RadiationKind::paths)
+      table.problem("source",
+                    fmt::format("= {} (wall {} is excluded: only view factors can drop a wall before "
+                                "closure); make it adiabatic, or choose embree, lines or correlation",
+                                name, wall.name));
+    if (needs_planes && !wall.is_polygon())
+      table.problem("source",
+                    fmt::format("= {} (wall {} is a mesh: this source knows planar walls only); choose "
+                                "paths or embree",
+                                name, wall.name));
+  }
+}
+
+void check_order(TomlTable& table, RadiationKind kind, const Scene& scene) {
+  if (kind != RadiationKind::lines)
+    table.problem("order", fmt::format("is not used by source = {}; leave it out or set source = \"lines\"",
+                                       to_string(kind)));
+  if (scene.periodic[0] || scene.periodic[1] || scene.periodic[2])
+    table.problem("order", "must be 0 (the box is periodic); source = \"paths\" is exact there");
+  for (const Wall& wall : scene.walls)
+    if (wall.role == WallRole::excluded)
+      table.problem("order", fmt::format("must be 0 (wall {} is excluded); make it adiabatic", wall.name));
+  if (table.has("closure"))
+    table.problem("closure",
+                  "nothing is closed with order > 0 (its moments close by themselves); leave it out");
+}
+
+/// A plug states its solid fraction; of other beds it is measured when they exist.
+void check_table(TomlTable& table, const std::filesystem::path& file, const Scene& scene) {
+  if (!std::filesystem::is_regular_file(file)) return;  // reported by the reader
+  try {
+    const auto correlation = read_correlation(file);
+    if (scene.feed.kind == FeedSettings::Kind::plug && scene.feed.solid_fraction > 0)
+      Correlation(correlation, scene.feed.solid_fraction);
+  } catch (const InputError& error) {
+    table.problem("table", fmt::format("= {} ({})", file.string(), error.what()));
+  }
+}
+
+RadiationSettings read_radiation(TomlTable table, const Scene& scene, const std::string& fallback_source) {
+  RadiationSettings settings;
+  const auto chosen =
+      table.choice("source", {"none", "paths", "embree", "lines", "correlation"}, fallback_source);
+  settings.kind = kind_from(chosen);
+  const bool paths = settings.kind == RadiationKind::paths;
+  settings.table = table.file("table", settings.kind == RadiationKind::correlation);
+  settings.order = static_cast<int>(table.integer("order", 0, 3, 0));
+  settings.rays = table.number("rays",
+                               {.min = paths ? 2.0 * path_batches : 1,
+                                .max = 1e9,
+                                .why = paths ? "walks per update" : "rays per particle"},
+                               default_rays(settings.kind, settings.order));
+  settings.every_s =
+      table.number("every_s", {.unit = "s", .min = 0, .min_exclusive = true}, settings.every_s);
+  settings.closure = table.choice("closure", {"reciprocal", "row_sum"}, "reciprocal") == "row_sum"
+                         ? Closure::row_sum
+                         : Closure::reciprocal;
+  settings.seed = static_cast<std::uint64_t>(table.integer("seed", 0, 1LL << 62, 1));
+
+  if (table.has("table") && settings.kind != RadiationKind::correlation)
+    table.problem("table",
+                  fmt::format("is not used by source = {}; leave it out or set source = \"correlation\"",
+                              to_string(settings.kind)));
+  if (settings.order > 0) check_order(table, settings.kind, scene);
+  if (table.has("closure") && (paths || settings.kind == RadiationKind::none))
+    table.problem("closure",
+                  fmt::format("nothing is closed with source = {}; leave it out", to_string(settings.kind)));
+  if (settings.kind == RadiationKind::correlation) check_table(table, settings.table, scene);
+  if (settings.kind != RadiationKind::none) check_source_against_walls(table, settings.kind, scene);
+  return settings;
+}
+
+OutputSettings read_output(TomlTable table, const Scene& scene) {
+  const double fallback = scene.end_time_s > 0 ? scene.end_time_s / 100 : 1;
+  OutputSettings output;
+  output.every_s = table.number("every_s", {.unit = "s", .min = 0, .min_exclusive = true}, fallback);
+  output.frames_every_s =
+      table.number("frames_every_s", {.unit = "s", .min = 0, .min_exclusive = true}, 10 * output.every_s);
+  return output;
+}
+
+ValidateSettings read_validate(TomlTable table, const Scene& scene) {
+  ValidateSettings validate;
+  for (auto& snapshot : table.tables("snapshot")) validate.snapshots.push_back(snapshot.file("file", true));
+  if (auto reference = table.table("reference"); reference.present())
+    validate.reference = read_radiation(reference, scene, "paths");
+  for (auto& compared : table.tables("compare"))
+    validate.compared.push_back(read_radiation(compared, scene, "correlation"));
+  if (table.has("times_s"))
+    validate.times_s = table.number_list("times_s", {.unit = "s", .min = 0, .min_exclusive = true}, 1);
+  std::sort(validate.times_s.begin(), validate.times_s.end());
+  return validate;
+}
+
+void check_heat_has_something_to_do(TomlDocument& document, const Scene& scene, const HeatScene& heat) {
+  if (scene.engine == EngineKind::none && heat.radiation.kind == RadiationKind::none &&
+      !heat.conduction.gas && !heat.conduction.solid)
+    document.problem("dem.engine",
+                     "= \"none\" (a frozen bed without conduction and radiation: nothing happens)");
+}
+
+}  // namespace
+
+const char* to_string(RadiationKind kind) {
+  switch (kind) {
+    case RadiationKind::none:
+      return "none";
+    case RadiationKind::paths:
+      return "paths";
+    case RadiationKind::embree:
+      return "embree";
+    case RadiationKind::lines:
+      return "lines";
+    case RadiationKind::correlation:
+      return "correlation";
+  }
+  return "none";
+}
+
+HeatScene read_heat_scene(TomlDocument& document, const Scene& scene) {
+  auto root = document.root();
+  HeatScene heat;
+  heat.conduction = read_conduction(root.table("conduction"));
+  heat.conduction.gas = read_gas(root.table("gas"));
+  heat.conduction_every_steps = read_conduction_interval(root.table("conduction"), scene);
+  auto radiation = root.table("radiation");
+  heat.radiation = read_radiation(radiation, scene, radiation.present() ? "paths" : "none");
+  heat.output = read_output(root.table("output"), scene);
+  heat.validate = read_validate(root.table("validate"), scene);
+  check_heat_has_something_to_do(document, scene, heat);
+  return heat;
+}
+
+Case read_case(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  auto document = TomlDocument::from_file(file);
+  for (const auto& override_text : overrides) document.override_value(override_text);
+  Case result;
+  result.flow = read_scene(document);
+  if (result.flow.engine == EngineKind::liggghts)
+    for (const auto& problem : liggghts_problems(result.flow)) document.problem("dem.engine", problem);
+  result.heat = read_heat_scene(document, result.flow);
+  document.finish();
+  result.effective_text = document.effective_text();
+  return result;
+}
+
+}  // namespace granrad

@@ -1,0 +1,65 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coupling/heat/conduction.h"
+#include "dem/base/toml_reader.h"
+#include "dem/scene/scene.h"
+#include "raytrace/exchange.h"
+
+namespace granrad {
+
+enum class RadiationKind { none, paths, embree, lines, correlation };
+const char* to_string(RadiationKind kind);
+
+/// [radiation], and each source of [validate].
+struct RadiationSettings {
+  RadiationKind kind = RadiationKind::none;
+  std::filesystem::path table;  ///< correlation only
+  double rays = 0;              ///< paths: walks per update; embree, lines: rays per particle
+  double every_s = 0.01;
+  Closure closure = Closure::reciprocal;
+  int order = 0;  ///< lines only: of the spherical harmonics of each sphere's radiosity; 0: one radiosity
+  std::uint64_t seed = 1;
+};
+
+/// [output]
+struct OutputSettings {
+  double every_s = 0, frames_every_s = 0;
+};
+
+/// [validate]: what `granrun validate` compares. Absent: a choice by the scene (see compare_sources.h).
+struct ValidateSettings {
+  std::vector<std::filesystem::path> snapshots;  ///< [[validate.snapshot]] file; none: the bed of the scene
+  std::optional<RadiationSettings> reference;    ///< [validate.reference]
+  std::vector<RadiationSettings> compared;       ///< [[validate.compare]]
+  std::vector<double> times_s;                   ///< rows of validation.csv
+};
+
+/// The heat part of what the user wrote: SI, checked.
+struct HeatScene {
+  ConductionSettings conduction;   ///< [conduction], and [gas]: absent, no lenses
+  int conduction_every_steps = 0;  ///< DEM steps between conduction updates; 0: chosen (see time_plan.h)
+  RadiationSettings radiation;
+  OutputSettings output;
+  ValidateSettings validate;
+};
+
+/// Reads [gas], [conduction], [radiation], [output], [validate] and checks them against the flow part;
+/// problems go to the document.
+HeatScene read_heat_scene(TomlDocument& document, const Scene& scene);
+
+/// What the user wrote, all of it.
+struct Case {
+  Scene flow;
+  HeatScene heat;
+  std::string effective_text;  ///< the document in force, as TOML
+};
+
+/// Reads a scene file with `overrides` ("key=value"). Throws InputError with every problem, IoError.
+Case read_case(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+
+}  // namespace granrad

@@ -1,0 +1,128 @@
+#include "coupling/simulation/history.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "coupling/simulation/case_folder.h"
+#include "dem/base/error.h"
+#include "dem/base/text_file.h"
+
+namespace granrad {
+
+namespace {
+
+std::string header() {
+  std::string line;
+  for (const auto& column : history_columns())
+    line += fmt::format("{}{}", line.empty() ? "" : ",", column.name);
+  return line + "\n";
+}
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> cells(1);
+  for (const char c : line)
+    if (c == ',')
+      cells.emplace_back();
+    else
+      cells.back() += c;
+  return cells;
+}
+
+double number(const std::string& cell) {
+  return cell.empty() ? std::numeric_limits<double>::quiet_NaN() : std::strtod(cell.c_str(), nullptr);
+}
+
+/// The rows whose time is not after `time_s`; a row cut short by a crash is dropped.
+std::string rows_up_to(const std::string& text, double time_s) {
+  std::string kept;
+  std::size_t begin = text.find('\n') + 1;
+  for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
+    const std::string line = text.substr(begin, end - begin);
+    if (split(line).size() == history_columns().size() &&
+        std::strtod(line.c_str(), nullptr) <= time_s * (1 + 1e-9))
+      kept += line + "\n";
+  }
+  return kept;
+}
+
+}  // namespace
+
+std::string cell(double value, int digits) {
+  return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "";
+}
+
+const std::vector<HistoryColumn>& history_columns() {
+  using R = HistoryRow;
+  static const std::vector<HistoryColumn> columns = {
+      {"time_s", &R::time_s},
+      {"particle_count", &R::particle_count},
+      {"solid_fraction", &R::solid_fraction},
+      {"mean_temperature_K", &R::mean_temperature_K},
+      {"mass_flow_in_kg_s", &R::mass_flow_in_kg_s},
+      {"mass_flow_out_kg_s", &R::mass_flow_out_kg_s},
+      {"Q_ss_W", &R::Q_ss_W},
+      {"Q_sfs_W", &R::Q_sfs_W},
+      {"Q_rad_W", &R::Q_rad_W},
+      {"h_ss_W_m2K", &R::h_ss_W_m2K},
+      {"h_sfs_W_m2K", &R::h_sfs_W_m2K},
+      {"h_rad_W_m2K", &R::h_rad_W_m2K},
+      {"h_wp_W_m2K", &R::h_wp_W_m2K},
+      {"Nu_d", &R::Nu_d},
+      {"energy_defect", &R::energy_defect},
+      {"Q_rad_error_W", &R::Q_rad_error_W},
+      {"h_wp_error_W_m2K", &R::h_wp_error_W_m2K},
+      {"region_particle_count", &R::region_particle_count},
+      {"mean_velocity_m_s", &R::mean_velocity_m_s},
+      {"outlet_temperature_K", &R::outlet_temperature_K},
+      {"Pe_L", &R::Pe_L},
+      {"Pe_d_star", &R::Pe_d_star},
+      {"coordination_number", &R::coordination_number},
+      {"residence_time_s", &R::residence_time_s},
+  };
+  return columns;
+}
+
+HistoryWriter::HistoryWriter(const std::filesystem::path& file, double resume_after_s) : file_(file) {
+  std::string text = header();
+  if (resume_after_s >= 0 && std::filesystem::exists(file))
+    text += rows_up_to(read_text_file(file), resume_after_s);
+  write_text_file(file, text);
+}
+
+void HistoryWriter::append(const HistoryRow& row) {
+  std::string line;
+  for (const auto& column : history_columns()) {
+    if (!line.empty()) line += ',';
+    line += cell(row.*column.value);
+  }
+  line += "\n";
+  std::FILE* out = std::fopen(file_.c_str(), "ab");
+  if (!out) throw IoError(fmt::format("{}: cannot be written", file_.string()));
+  const bool written = std::fwrite(line.data(), 1, line.size(), out) == line.size();
+  if (std::fclose(out) != 0 || !written) throw IoError(fmt::format("{}: cannot be written", file_.string()));
+}
+
+History read_history(const std::filesystem::path& file) {
+  std::stringstream text(read_text_file(file));
+  std::string line;
+  std::getline(text, line);
+  const auto names = split(line);
+  if (names.empty() || names.front() != "time_s")
+    throw InputError(fmt::format("{} (not a history: the first column must be time_s)", file.string()));
+  History history;
+  for (const auto& name : names) history[name];
+  while (std::getline(text, line)) {
+    const auto cells = split(line);
+    if (cells.size() != names.size()) continue;  // a row being written now
+    for (std::size_t k = 0; k < names.size(); ++k) history[names[k]].push_back(number(cells[k]));
+  }
+  return history;
+}
+
+}  // namespace granrad

@@ -1,0 +1,127 @@
+#include "coupling/simulation/radiation_source.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "coupling/heat/harmonic_source.h"
+#include "coupling/heat/radiosity_source.h"
+#include "fit/correlation/correlation.h"
+#include "fit/correlation/correlation_source.h"
+#include "raytrace/lines/line_sweep.h"
+#include "raytrace/paths/path_source.h"
+#include "raytrace/rays/view_factors.h"
+
+namespace granrad {
+
+namespace {
+
+RadiositySource::Estimate embree_estimate(const RadiationSettings& settings, int threads) {
+  return [=](const Enclosure& enclosure, std::uint64_t update) {
+    TraceOptions options;
+    options.rays_per_particle = settings.rays;
+    options.seed = settings.seed + update;
+    options.threads = threads;
+    return one_way_estimate(trace_view_factors(enclosure, options));
+  };
+}
+
+/// `rays` line ends per particle: every line through a disc ends on it twice. Directions first (500 keep the
+/// scatter between directions below that between lines), then more lines per disc for the fluxes of single
+/// particles.
+LineOptions line_options(const RadiationSettings& settings, std::uint64_t update, int threads) {
+  LineOptions options;
+  options.lines_per_disc = settings.rays > 24000 ? 12 : 6;
+  const double per_direction = 2 * options.lines_per_disc * options.replicates;
+  options.directions = std::max(8, static_cast<int>(std::lround(settings.rays / per_direction)));
+  options.seed = settings.seed + update;
+  options.threads = threads;
+  return options;
+}
+
+RadiositySource::Estimate line_estimate(const RadiationSettings& settings, int threads) {
+  return [=](const Enclosure& enclosure, std::uint64_t update) {
+    return sweep_exchange_areas(enclosure, line_options(settings, update, threads));
+  };
+}
+
+double stated_solid_fraction(const Scene& scene) {
+  return scene.feed.kind == FeedSettings::Kind::plug ? scene.feed.solid_fraction : 0;
+}
+
+}  // namespace
+
+std::unique_ptr<ExchangeSource> make_radiation_source(const RadiationSettings& settings, const Scene& scene,
+                                                      int threads) {
+  switch (settings.kind) {
+    case RadiationKind::none:
+      return nullptr;
+    case RadiationKind::paths: {
+      PathOptions options;
+      options.walks = static_cast<std::int64_t>(settings.rays);
+      options.seed = settings.seed;
+      options.threads = threads;
+      return std::make_unique<PathSource>(options);
+    }
+    case RadiationKind::embree:
+      return std::make_unique<RadiositySource>(embree_estimate(settings, threads), settings.closure);
+    case RadiationKind::lines:
+      if (settings.order > 0)
+        return std::make_unique<HarmonicSource>(settings.order, line_options(settings, 0, threads));
+      return std::make_unique<RadiositySource>(line_estimate(settings, threads), settings.closure);
+    case RadiationKind::correlation:
+      return std::make_unique<RadiositySource>(
+          correlation_exchange(read_correlation(settings.table), stated_solid_fraction(scene)),
+          settings.closure);
+  }
+  return nullptr;
+}
+
+void check_radiation(const RadiationSettings& settings, const Scene& scene, const Bed& bed) {
+  if (settings.kind == RadiationKind::none || bed.size() == 0) return;
+  const Enclosure enclosure = make_enclosure(bed, scene.region);
+  if (settings.kind == RadiationKind::correlation)
+    correlation_exchange(read_correlation(settings.table), stated_solid_fraction(scene))(enclosure, 0);
+  if (settings.kind == RadiationKind::lines)
+    sweep_exchange_areas(enclosure, {.directions = 1, .lines_per_disc = 1, .replicates = 2});
+}
+
+RadiativeState radiative_state(const Bed& bed, const Enclosure& enclosure, double surroundings_K) {
+  RadiativeState state;
+  const auto add = [&](double temperature_K, double emissivity, WallRole role) {
+    state.temperature_K.push_back(temperature_K);
+    state.emissivity.push_back(emissivity);
+    state.role.push_back(role);
+  };
+  for (std::int32_t i : enclosure.particle)
+    add(bed.temperature_K[i], bed.materials[bed.material[i]].emissivity, WallRole::isothermal);
+  for (const Wall& wall : enclosure.walls) add(wall.temperature_K, wall.emissivity, wall.role);
+  add(surroundings_K, 1, WallRole::open);
+  return state;
+}
+
+std::string describe(const RadiationSettings& settings) {
+  const char* closure = settings.closure == Closure::row_sum ? "row-sum closure" : "reciprocal closure";
+  switch (settings.kind) {
+    case RadiationKind::none:
+      return "none";
+    case RadiationKind::paths:
+      return fmt::format("paths, {:.0f} walks per update", settings.rays);
+    case RadiationKind::embree:
+      return fmt::format("view factors by Embree, {:.0f} rays per particle, {}", settings.rays, closure);
+    case RadiationKind::lines:
+      if (settings.order > 0)
+        return fmt::format(
+            "global lines, {:.0f} rays per particle, radiosities of order {} on spheres, in patches on "
+            "walls",
+            settings.rays, settings.order);
+      return fmt::format("view factors by global lines, {:.0f} rays per particle, {}", settings.rays,
+                         closure);
+    case RadiationKind::correlation:
+      return fmt::format("correlation table {}, {}", settings.table.filename().string(), closure);
+  }
+  return "";
+}
+
+}  // namespace granrad

@@ -1,0 +1,25 @@
+#pragma once
+#include <memory>
+
+#include "coupling/simulation/heat_scene.h"
+#include "raytrace/exchange_source.h"
+
+namespace granrad {
+
+/// The exchange source the settings ask for; null for none. A correlation table is used at the solid fraction
+/// of a plug feed, else at that of each enclosure it meets. Throws InputError, IoError (table).
+std::unique_ptr<ExchangeSource> make_radiation_source(const RadiationSettings& settings, const Scene& scene,
+                                                      int threads);
+
+/// Throws what the source would throw for this bed, at little cost: InputError (solid fraction outside the
+/// table, walls that the source cannot serve, particles outside the walls). A bed without particles passes.
+void check_radiation(const RadiationSettings& settings, const Scene& scene, const Bed& bed);
+
+/// Temperatures, emissivities and roles of every surface of an enclosure of `bed`; the surroundings are black
+/// and at the temperature of the first open wall, else as particles enter.
+RadiativeState radiative_state(const Bed& bed, const Enclosure& enclosure, double surroundings_K);
+
+/// One line for people: "paths, 10000 walks per update".
+std::string describe(const RadiationSettings& settings);
+
+}  // namespace granrad

@@ -1,0 +1,90 @@
+#include "coupling/simulation/step_limits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "coupling/heat/heat_step.h"
+#include "dem/step_limit.h"
+
+namespace granrad {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double radiation_fraction = 0.1;   // forward Euler, first order: 0.1 of the time constant
+constexpr double normal_deviates = 4;        // of the transverse velocity, both partners
+constexpr double smallest_speed_m_s = 1e-3;  // a bed at rest still settles
+
+double falling_height_m(const Scene& scene) {
+  double top = scene.box.max.z, bottom = scene.box.min.z;
+  for (const Wall& wall : scene.walls)
+    for (const Vec3& vertex : wall.vertices) {
+      top = std::max(top, vertex.z);
+      bottom = std::min(bottom, vertex.z);
+    }
+  return top - bottom;
+}
+
+double spread_of_speed_m_s(const Bed& bed) {
+  if (bed.size() == 0) return 0;
+  Vec3 mean{};
+  for (const Vec3& v : bed.velocity_m_s) mean += v;
+  mean *= 1.0 / static_cast<double>(bed.size());
+  double largest = 0;
+  for (const Vec3& v : bed.velocity_m_s) largest = std::max(largest, norm(v - mean));
+  return largest;
+}
+
+double impact_speed_m_s(const Scene& scene, const Bed& bed) {
+  const double fall = std::sqrt(2 * norm(scene.gravity_m_s2) * falling_height_m(scene));
+  const double jostle = std::sqrt(2.0) * normal_deviates * scene.feed.transverse_velocity_std_m_s;
+  return std::max(smallest_speed_m_s, std::max(2 * spread_of_speed_m_s(bed), jostle) + fall);
+}
+
+double smallest_radius_m(const Scene& scene, const Bed& bed) {
+  double smallest = scene.particle_diameter_m > 0 ? scene.particle_diameter_m / 2 : infinity;
+  for (double radius : bed.radius_m) smallest = std::min(smallest, radius);
+  return smallest;
+}
+
+/// The bed, or one particle of the scene where the bed is still empty.
+double radiation_limit_s(const Scene& scene, const Bed& bed) {
+  if (bed.size() > 0) return radiation_fraction * radiation_time_constant_s(bed);
+  Bed lone = bed;
+  lone.add(scene.box.min, {}, scene.particle_diameter_m / 2, scene.particle_temperature_K);
+  return radiation_fraction * radiation_time_constant_s(lone);
+}
+
+double largest_speed_m_s(const Scene& scene, const Bed& bed) {
+  double largest = scene.feed.velocity_m_s;
+  for (const Vec3& v : bed.velocity_m_s) largest = std::max(largest, norm(v));
+  return largest;
+}
+
+}  // namespace
+
+StepLimits step_limits(const Case& c, const Bed& bed) {
+  const Scene& scene = c.flow;
+  const double radius = smallest_radius_m(scene, bed);
+  StepLimits limits{};
+  limits.impact_speed_m_s = impact_speed_m_s(scene, bed);
+  limits.rayleigh_time_s = limits.hertz_time_s = limits.dem_s = infinity;
+  limits.radiation_s = limits.motion_s = infinity;
+  if (!std::isfinite(radius)) return limits;
+  if (scene.engine != EngineKind::none) {
+    for (const Material& material : scene.materials) {
+      limits.rayleigh_time_s = std::min(limits.rayleigh_time_s, rayleigh_time_s(material, radius));
+      limits.hertz_time_s =
+          std::min(limits.hertz_time_s, hertz_time_s(material, radius, limits.impact_speed_m_s));
+    }
+    limits.dem_s = std::min(StepLimit::rayleigh_share * limits.rayleigh_time_s,
+                            StepLimit::hertz_share * limits.hertz_time_s);
+    const double speed = largest_speed_m_s(scene, bed);
+    if (speed > 0) limits.motion_s = 2 * radius / speed;
+  }
+  if (c.heat.radiation.kind != RadiationKind::none) limits.radiation_s = radiation_limit_s(scene, bed);
+  return limits;
+}
+
+}  // namespace granrad

@@ -1,0 +1,110 @@
+#include "dem/base/program.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+
+#include "dem/base/error.h"
+
+#ifndef GRANRAD_VERSION
+#error "GRANRAD_VERSION and GRANRAD_GIT_SHA are set by dem/CMakeLists.txt"
+#endif
+
+namespace granrad {
+
+namespace {
+
+std::atomic<int> received_signal{0};
+
+void remember_signal(int signal) {
+  if (received_signal.exchange(signal) != 0) _exit(128 + signal);
+}
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::string duration_text(double seconds) {
+  if (seconds < 60) return fmt::format("{:.0f} s", seconds);
+  const long s = static_cast<long>(seconds + 0.5);
+  if (s < 3600) return fmt::format("{}:{:02} min", s / 60, s % 60);
+  return fmt::format("{}:{:02} h", s / 3600, s / 60 % 60);
+}
+
+}  // namespace
+
+const char* program_version() {
+  return GRANRAD_VERSION;
+}
+const char* program_git_sha() {
+  return GRANRAD_GIT_SHA;
+}
+
+int run_program(const std::string& name, const std::function<int()>& body) {
+  try {
+    const int code = body();
+    return interrupt_signal() ? 128 + interrupt_signal() : code;
+  } catch (const Error& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return interrupt_signal() ? 128 + interrupt_signal() : error.exit_code();
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "{}: out of memory\n", name);
+    return exit_numerical_failure;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}: {}\n", name, error.what());
+    return exit_numerical_failure;
+  }
+}
+
+void install_signal_handlers() {
+  std::signal(SIGINT, remember_signal);
+  std::signal(SIGTERM, remember_signal);
+}
+
+int interrupt_signal() {
+  return received_signal;
+}
+
+Progress::Progress(std::string what, double total, bool quiet)
+    : what_(std::move(what)), total_(total), started_s_(now_s()), quiet_(quiet), terminal_(isatty(2)) {
+  if (!terminal_) printed_s_ = started_s_ - 20;  // first line after 10 s
+}
+
+Progress::~Progress() {
+  if (!finished_ && terminal_ && !quiet_ && printed_s_ > 0) fmt::print(stderr, "\n");
+}
+
+void Progress::update(double done, const std::string& detail) {
+  if (quiet_) return;
+  const double now = now_s();
+  if (now - printed_s_ < (terminal_ ? 0.2 : 30.0)) return;
+  printed_s_ = now;
+  print(done, detail, false);
+}
+
+void Progress::finish(const std::string& detail) {
+  if (!quiet_ && !finished_) print(total_, detail, true);
+  finished_ = true;
+}
+
+void Progress::print(double done, const std::string& detail, bool last) {
+  const double elapsed = now_s() - started_s_, part = total_ > 0 ? done / total_ : 1;
+  std::string line = fmt::format("{} {:5.1f} %", what_, 100 * part);
+  if (last)
+    line += fmt::format("  in {}", duration_text(elapsed));
+  else if (part > 0)
+    line += fmt::format("  ETA {}", duration_text(elapsed * (1 - part) / part));
+  if (!detail.empty()) line += "  " + detail;
+  if (terminal_)
+    fmt::print(stderr, "\r\x1b[K{}{}", line, last ? "\n" : "");
+  else
+    fmt::print(stderr, "{}\n", line);
+  std::fflush(stderr);
+}
+
+}  // namespace granrad

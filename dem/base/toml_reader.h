@@ -1,0 +1,93 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dem/base/number_rule.h"
+#include "dem/base/vec3.h"
+
+namespace granrad {
+
+class TomlTable;
+
+/// One TOML file with every problem collected: syntax, wrong types, units, bounds, unknown keys. The only
+/// user of toml++. Each room reads the tables it understands; after all have read, `finish()` reports every
+/// key nobody asked for (with the closest known key as a suggestion) and throws InputError with all
+/// problems at once, sorted by position. Reading never throws: a bad value is recorded and a placeholder
+/// inside the rule's bounds is returned, so that later problems are found too.
+class TomlDocument {
+ public:
+  /// Throws IoError when the file cannot be read, InputError (with line and column) on a syntax error.
+  static TomlDocument from_file(const std::filesystem::path& file);
+  static TomlDocument from_string(std::string_view text, const std::string& name_in_messages);
+  TomlDocument(TomlDocument&&) noexcept;
+  TomlDocument& operator=(TomlDocument&&) noexcept;
+  ~TomlDocument();
+
+  /// `--set radiation.rays=1000`: parsed as TOML value (bare words as strings); located as `--set`.
+  void override_value(std::string_view key_equals_value);
+
+  TomlTable root();
+  /// Folder of the file: relative paths inside it start here.
+  std::filesystem::path folder() const;
+  /// Records a problem at the place of `path` ("material.friction"; "" for the file) in the house format.
+  void problem(std::string_view path, std::string_view message);
+  /// Throws InputError if anything was recorded or any key stayed unread.
+  void finish();
+  /// The document as it is in force (with overrides), as TOML text.
+  std::string effective_text() const;
+
+ private:
+  friend class TomlTable;
+  struct State;
+  TomlDocument();
+  std::unique_ptr<State> state_;
+};
+
+/// A table of the document. A key that is read is a known key. Absent tables read as empty.
+class TomlTable {
+ public:
+  bool present() const;
+  std::string path() const;  ///< "radiation", "walls.y_min", "polygon[2]"; "" for the root
+  bool has(std::string_view key) const;
+  std::vector<std::string> keys() const;
+
+  double number(std::string_view key, const NumberRule& rule);                   ///< required
+  double number(std::string_view key, const NumberRule& rule, double fallback);  ///< optional
+  std::optional<double> optional_number(std::string_view key, const NumberRule& rule);
+  std::int64_t integer(std::string_view key, std::int64_t min, std::int64_t max,
+                       std::optional<std::int64_t> fallback = {});
+  bool boolean(std::string_view key, std::optional<bool> fallback = {});
+  std::string string(std::string_view key, std::optional<std::string> fallback = {});
+  /// One of `allowed`; anything else is a problem that lists them and suggests the closest.
+  std::string choice(std::string_view key, const std::vector<std::string>& allowed,
+                     std::optional<std::string> fallback = {});
+  /// An existing file, made absolute from the document's folder.
+  std::filesystem::path file(std::string_view key, bool required);
+  Vec3 vec3(std::string_view key, const NumberRule& each, std::optional<Vec3> fallback = {});
+  std::vector<Vec3> vec3_list(std::string_view key, const NumberRule& each, std::size_t min_count);
+  std::vector<double> number_list(std::string_view key, const NumberRule& each, std::size_t min_count);
+  std::vector<std::string> string_list(std::string_view key, std::size_t min_count = 0);
+
+  /// When `key` names a TOML file, the keys of that file's root that this table lacks are added to it; they
+  /// keep their place in that file for messages.
+  void add_keys_from_file(std::string_view key);
+
+  TomlTable table(std::string_view key);                ///< [key]; absent reads as empty
+  std::vector<TomlTable> tables(std::string_view key);  ///< [[key]]
+  /// Records a problem at `key` of this table, or at the table when the key is absent, as `path = value
+  /// (message)`; a message that starts with "= " shows the value itself.
+  void problem(std::string_view key, std::string_view message);
+
+ private:
+  friend class TomlDocument;
+  struct Node;
+  explicit TomlTable(std::shared_ptr<Node> node) : node_(std::move(node)) {}
+  std::shared_ptr<Node> node_;
+};
+
+}  // namespace granrad

@@ -1,0 +1,109 @@
+#include "dem/feed/feed.h"
+
+#include <variant>
+
+#include "dem/feed/hopper_feed.h"
+#include "dem/feed/plug_feed.h"
+
+namespace granrad {
+
+namespace {
+
+/// A scene without a feed: nothing comes, nothing goes.
+struct NoFeed {
+  void start(Bed&) {}
+  double leaves_below_m() const { return -std::numeric_limits<double>::infinity(); }
+  void insert_due(Bed&, FeedTotals&) {}
+  void save(StateBlock&) const {}
+  void load(const StateBlock&) {}
+};
+
+using AnyFeed = std::variant<NoFeed, PlugFeed, HopperFeed>;
+
+AnyFeed make_feed(const Scene& scene) {
+  switch (scene.feed.kind) {
+    case FeedSettings::Kind::plug:
+      return AnyFeed(std::in_place_type<PlugFeed>, scene);
+    case FeedSettings::Kind::hopper:
+      return AnyFeed(std::in_place_type<HopperFeed>, scene);
+    case FeedSettings::Kind::none:
+      break;
+  }
+  return NoFeed{};
+}
+
+double heat_J(const Bed& bed, std::size_t i) {
+  return mass_kg(bed, i) * bed.materials[bed.material[i]].specific_heat_J_kgK * bed.temperature_K[i];
+}
+
+void remove_below(double z, Bed& bed, FeedTotals& totals) {
+  std::vector<char> keep(bed.size(), 1);
+  const auto removed_before = totals.removed;
+  for (std::size_t i = 0; i < bed.size(); ++i) {
+    if (bed.position_m[i].z >= z) continue;
+    keep[i] = 0;
+    totals.mass_out_kg += mass_kg(bed, i);
+    totals.heat_out_J += heat_J(bed, i);
+    ++totals.removed;
+  }
+  if (totals.removed > removed_before) bed.remove_unless(keep);
+}
+
+void count_inserted(const Bed& bed, std::size_t first_new, FeedTotals& totals) {
+  for (std::size_t i = first_new; i < bed.size(); ++i) {
+    totals.mass_in_kg += mass_kg(bed, i);
+    totals.heat_in_J += heat_J(bed, i);
+    ++totals.inserted;
+  }
+}
+
+}  // namespace
+
+struct Feed::Impl {
+  bool frozen;
+  AnyFeed feed;
+  FeedTotals totals;
+};
+
+Feed::Feed(const Scene& scene)
+    : impl_(std::make_unique<Impl>(Impl{scene.engine == EngineKind::none, make_feed(scene), {}})) {}
+Feed::~Feed() = default;
+Feed::Feed(Feed&&) noexcept = default;
+Feed& Feed::operator=(Feed&&) noexcept = default;
+
+void Feed::start(Bed& bed) {
+  std::visit([&](auto& feed) { feed.start(bed); }, impl_->feed);
+}
+
+void Feed::update(Bed& bed) {
+  if (impl_->frozen) return;
+  const auto step = [&](auto& feed) {
+    remove_below(feed.leaves_below_m(), bed, impl_->totals);
+    const auto first_new = bed.size();
+    feed.insert_due(bed, impl_->totals);
+    count_inserted(bed, first_new, impl_->totals);
+  };
+  std::visit(step, impl_->feed);
+}
+
+const FeedTotals& Feed::totals() const {
+  return impl_->totals;
+}
+
+StateBlock Feed::save() const {
+  const FeedTotals& t = impl_->totals;
+  StateBlock state;
+  state.reals["totals"] = {t.mass_in_kg, t.mass_out_kg, t.heat_in_J, t.heat_out_J};
+  state.integers["counts"] = {t.inserted, t.removed, t.nudged, t.waiting};
+  std::visit([&](const auto& feed) { feed.save(state); }, impl_->feed);
+  return state;
+}
+
+void Feed::load(const StateBlock& state) {
+  const auto& reals = state.reals.at("totals");
+  const auto& counts = state.integers.at("counts");
+  impl_->totals = {reals[0], reals[1], reals[2], reals[3], counts[0], counts[1], counts[2], counts[3]};
+  std::visit([&](auto& feed) { feed.load(state); }, impl_->feed);
+}
+
+}  // namespace granrad

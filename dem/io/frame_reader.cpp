@@ -1,0 +1,175 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dem/base/error.h"
+#include "dem/base/hdf5_file.h"
+#include "dem/io/frame_layout.h"
+#include "dem/io/snapshot.h"
+
+namespace granrad {
+
+namespace {
+
+std::vector<Vec3> read_vectors(const Hdf5Reader& in, const std::string& name) {
+  const std::vector<double> flat = in.read<double>(name, 3);
+  std::vector<Vec3> values(flat.size() / 3);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = {flat[3 * i], flat[3 * i + 1], flat[3 * i + 2]};
+  return values;
+}
+
+/// Reads a frame whose contents may be anything: `sound` refuses what a Bed must not hold.
+class FrameReader {
+ public:
+  explicit FrameReader(const std::filesystem::path& file) : file_(file.string()), in_(file) {}
+
+  Snapshot read() {
+    check_format();
+    Snapshot snapshot;
+    snapshot.origin = file_;
+    Bed& bed = snapshot.bed;
+    bed.time_s = in_.real_attribute("/granrad", "time_s");
+    bed.step = in_.integer_attribute("/granrad", "step");
+    bed.next_id = in_.integer_attribute("/granrad", "next_id");
+    read_materials(bed);
+    read_particles(bed);
+    read_contacts(bed);
+    read_walls(bed);
+    const auto box = read_vectors(in_, "/granrad/box");
+    const auto periodic = in_.read<std::uint8_t>("/granrad/periodic");
+    sound(box.size() == 2 && periodic.size() == 3, "box");
+    bed.box = {box[0], box[1]};
+    std::copy(periodic.begin(), periodic.end(), bed.periodic.begin());
+    read_state(snapshot.state);
+    return snapshot;
+  }
+
+ private:
+  void check_format() const {
+    if (!in_.has_attribute("/granrad", "format") || in_.text_attribute("/granrad", "format") != frame_format)
+      throw InputError(
+          fmt::format("{}: is not a frame of granrad (no /granrad with format \"{}\")", file_, frame_format));
+    const auto version = in_.integer_attribute("/granrad", "version");
+    if (version != frame_version)
+      throw InputError(
+          fmt::format("{}: frame version {} (this program reads version {}) use the program that wrote it",
+                      file_, version, frame_version));
+  }
+  void sound(bool holds, const std::string& what) const {
+    if (!holds)
+      throw InputError(fmt::format("{}: {} of this frame is inconsistent (damaged file)", file_, what));
+  }
+
+  void read_particles(Bed& bed) const {
+    const std::string at = "/granrad/particles/";
+    bed.id = in_.read<std::int64_t>(at + "id");
+    bed.position_m = read_vectors(in_, at + "position_m");
+    bed.velocity_m_s = read_vectors(in_, at + "velocity_m_s");
+    bed.angular_velocity_rad_s = read_vectors(in_, at + "angular_velocity_rad_s");
+    bed.radius_m = in_.read<double>(at + "radius_m");
+    bed.temperature_K = in_.read<double>(at + "temperature_K");
+    bed.radiative_heat_W = in_.read<double>(at + "radiative_heat_W");
+    bed.material = in_.read<std::int32_t>(at + "material");
+    const std::size_t n = bed.size();
+    sound(bed.position_m.size() == n && bed.velocity_m_s.size() == n &&
+              bed.angular_velocity_rad_s.size() == n && bed.radius_m.size() == n &&
+              bed.temperature_K.size() == n && bed.radiative_heat_W.size() == n && bed.material.size() == n,
+          "the length of a particle column");
+    sound(std::adjacent_find(bed.id.begin(), bed.id.end(), std::greater_equal<>()) == bed.id.end() &&
+              (n == 0 || (bed.id.front() >= 0 && bed.id.back() < bed.next_id)),
+          "the order of particle ids");
+    for (std::size_t i = 0; i < n; ++i)
+      sound(is_finite(bed.position_m[i]) && is_finite(bed.velocity_m_s[i]) && bed.radius_m[i] > 0 &&
+                std::isfinite(bed.radius_m[i]) && std::isfinite(bed.temperature_K[i]) &&
+                bed.material[i] >= 0 && bed.material[i] < std::max<std::int32_t>(1, bed.materials.size()),
+            fmt::format("particle {}", bed.id[i]));
+  }
+
+  void read_contacts(Bed& bed) const {
+    const auto first = in_.read<std::int64_t>("/granrad/contacts/first");
+    const auto second = in_.read<std::int64_t>("/granrad/contacts/second");
+    const auto displacement = read_vectors(in_, "/granrad/contacts/displacement_m");
+    sound(second.size() == first.size() && displacement.size() == first.size(), "contact memory");
+    for (std::size_t k = 0; k < first.size(); ++k)
+      bed.contacts.push_back({first[k], second[k], displacement[k]});
+  }
+
+  void read_materials(Bed& bed) const {
+    for (auto& name : in_.read_texts("/granrad/materials/name"))
+      bed.materials.emplace_back().name = std::move(name);
+    for (const auto& [property, member] : material_columns()) {
+      const auto column = in_.read<double>("/granrad/materials/" + property);
+      sound(column.size() == bed.materials.size(), "material " + property);
+      for (std::size_t m = 0; m < column.size(); ++m) bed.materials[m].*member = column[m];
+    }
+  }
+
+  void read_walls(Bed& bed) const {
+    const std::string at = "/granrad/walls/";
+    const auto names = in_.read_texts(at + "name");
+    const auto role = in_.read<std::int32_t>(at + "role"),
+               corners = in_.read<std::int32_t>(at + "triangles", 3);
+    const auto contact = in_.read<std::uint8_t>(at + "contact");
+    const auto temperature = in_.read<double>(at + "temperature_K"),
+               emissivity = in_.read<double>(at + "emissivity"),
+               opens_at = in_.read<double>(at + "opens_at_s");
+    const auto velocity = read_vectors(in_, at + "velocity_m_s"),
+               vertices = read_vectors(in_, at + "vertices_m");
+    const auto vertex_begin = in_.read<std::int64_t>(at + "vertex_begin"),
+               triangle_begin = in_.read<std::int64_t>(at + "triangle_begin");
+    const std::size_t n = names.size();
+    const auto ranges = [n](const std::vector<std::int64_t>& begin, std::size_t total) {
+      return begin.size() == n + 1 && begin.front() == 0 && std::is_sorted(begin.begin(), begin.end()) &&
+             begin.back() == static_cast<std::int64_t>(total);
+    };
+    sound(role.size() == n && contact.size() == n && temperature.size() == n && emissivity.size() == n &&
+              opens_at.size() == n && velocity.size() == n && ranges(vertex_begin, vertices.size()) &&
+              ranges(triangle_begin, corners.size() / 3),
+          "the length of a wall column");
+    for (std::size_t w = 0; w < n; ++w) {
+      Wall wall;
+      wall.name = names[w];
+      sound(role[w] >= 0 && role[w] <= static_cast<std::int32_t>(WallRole::excluded),
+            "the role of wall " + names[w]);
+      wall.role = static_cast<WallRole>(role[w]);
+      wall.contact = contact[w];
+      wall.temperature_K = temperature[w];
+      wall.emissivity = emissivity[w];
+      wall.opens_at_s = opens_at[w];
+      wall.velocity_m_s = velocity[w];
+      wall.vertices.assign(vertices.begin() + vertex_begin[w], vertices.begin() + vertex_begin[w + 1]);
+      for (auto t = triangle_begin[w]; t < triangle_begin[w + 1]; ++t) {
+        wall.triangles.push_back({corners[3 * t], corners[3 * t + 1], corners[3 * t + 2]});
+        for (const auto corner : wall.triangles.back())
+          sound(corner >= 0 && corner < static_cast<std::int32_t>(wall.vertices.size()),
+                "a triangle of " + names[w]);
+      }
+      bed.walls.push_back(std::move(wall));
+    }
+  }
+
+  void read_state(StateBlocks& state) const {
+    for (const auto& block : in_.children("/granrad/state")) {
+      StateBlock& columns = state[block];
+      for (const auto& name : in_.children("/granrad/state/" + block)) {
+        const std::string path = fmt::format("/granrad/state/{}/{}", block, name);
+        if (in_.is_integer(path))
+          columns.integers[name] = in_.read<std::int64_t>(path);
+        else
+          columns.reals[name] = in_.read<double>(path);
+      }
+    }
+  }
+
+  std::string file_;
+  Hdf5Reader in_;
+};
+
+}  // namespace
+
+Snapshot read_frame(const std::filesystem::path& file) {
+  return FrameReader(file).read();
+}
+
+}  // namespace granrad

@@ -1,0 +1,29 @@
+#include <fmt/core.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "dem/base/error.h"
+#include "dem/io/snapshot.h"
+
+namespace granrad {
+
+void write_series(const std::filesystem::path& series_file,
+                  const std::vector<std::pair<std::filesystem::path, double>>& frames) {
+  nlohmann::ordered_json series{{"file-series-version", "1.0"}, {"files", nlohmann::ordered_json::array()}};
+  const auto folder = std::filesystem::absolute(series_file).parent_path();
+  for (const auto& [file, time_s] : frames)
+    series["files"].push_back(
+        {{"name", std::filesystem::absolute(file).lexically_relative(folder).generic_string()},
+         {"time", time_s}});
+  std::filesystem::path temporary = series_file;
+  temporary += ".tmp";
+  std::ofstream out(temporary);
+  out << series.dump(1) << '\n';
+  out.close();
+  std::error_code failed;
+  if (out) std::filesystem::rename(temporary, series_file, failed);
+  if (!out || failed) throw IoError(fmt::format("{}: cannot be written", series_file.string()));
+}
+
+}  // namespace granrad

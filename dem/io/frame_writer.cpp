@@ -1,0 +1,157 @@
+#include <fmt/core.h>
+
+#include <cmath>
+#include <fstream>
+#include <numeric>
+
+#include "dem/base/error.h"
+#include "dem/base/hdf5_file.h"
+#include "dem/base/program.h"
+#include "dem/io/frame_layout.h"
+#include "dem/io/snapshot.h"
+
+namespace granrad {
+
+namespace {
+
+static_assert(sizeof(Vec3) == 3 * sizeof(double));
+
+void write_vectors(Hdf5Writer& out, const std::string& name, const std::vector<Vec3>& values) {
+  out.write(name, values.empty() ? nullptr : &values[0].x, values.size(), 3);
+}
+
+/// Throws NumericalError: what is not finite must not leave the program.
+void check(const std::filesystem::path& file, const Bed& bed,
+           const std::map<std::string, std::vector<double>>& extra) {
+  for (std::size_t i = 0; i < bed.size(); ++i)
+    if (!is_finite(bed.position_m[i]) || !is_finite(bed.velocity_m_s[i]) ||
+        !is_finite(bed.angular_velocity_rad_s[i]) || !std::isfinite(bed.temperature_K[i]) ||
+        !std::isfinite(bed.radiative_heat_W[i]))
+      throw NumericalError(fmt::format("{}: the state of particle {} is not finite; nothing written",
+                                       file.string(), bed.id[i]));
+  for (const auto& [name, column] : extra)
+    if (column.size() != bed.size())
+      throw NumericalError(fmt::format("{}: column {} has {} values for {} particles", file.string(), name,
+                                       column.size(), bed.size()));
+}
+
+/// The particles as VTKHDF vertices, for viewers.
+void write_vtk(Hdf5Writer& out, const Bed& bed, const std::map<std::string, std::vector<double>>& extra) {
+  const std::int64_t n = static_cast<std::int64_t>(bed.size());
+  constexpr std::uint8_t vtk_vertex = 1;
+  std::vector<std::int64_t> index(n + 1);
+  std::iota(index.begin(), index.end(), 0);
+  out.group("/VTKHDF");
+  out.attribute("/VTKHDF", "Version", std::vector<std::int64_t>{1, 0});
+  out.fixed_text_attribute("/VTKHDF", "Type", "UnstructuredGrid");
+  for (const char* count : {"NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"})
+    out.write(fmt::format("/VTKHDF/{}", count), std::vector<std::int64_t>{n});
+  out.write("/VTKHDF/Connectivity", index.data(), bed.size());
+  out.write("/VTKHDF/Offsets", index);
+  out.write("/VTKHDF/Types", std::vector<std::uint8_t>(n, vtk_vertex));
+  write_vectors(out, "/VTKHDF/Points", bed.position_m);
+  out.write("/VTKHDF/PointData/id", bed.id);
+  out.write("/VTKHDF/PointData/radius", bed.radius_m);
+  out.write("/VTKHDF/PointData/temperature", bed.temperature_K);
+  write_vectors(out, "/VTKHDF/PointData/v", bed.velocity_m_s);
+  write_vectors(out, "/VTKHDF/PointData/omega", bed.angular_velocity_rad_s);
+  out.write("/VTKHDF/PointData/q_rad", bed.radiative_heat_W);
+  out.write("/VTKHDF/PointData/material", bed.material);
+  for (const auto& [name, column] : extra) out.write("/VTKHDF/PointData/" + name, column);
+}
+
+void write_contacts(Hdf5Writer& out, const std::vector<ContactMemory>& contacts) {
+  std::vector<std::int64_t> first, second;
+  std::vector<Vec3> displacement;
+  for (const auto& c : contacts) {
+    first.push_back(c.first);
+    second.push_back(c.second);
+    displacement.push_back(c.displacement_m);
+  }
+  out.write("/granrad/contacts/first", first);
+  out.write("/granrad/contacts/second", second);
+  write_vectors(out, "/granrad/contacts/displacement_m", displacement);
+}
+
+void write_materials(Hdf5Writer& out, const std::vector<Material>& materials) {
+  std::vector<std::string> names;
+  for (const auto& m : materials) names.push_back(m.name);
+  out.write("/granrad/materials/name", names);
+  for (const auto& [property, member] : material_columns()) {
+    std::vector<double> column;
+    for (const auto& m : materials) column.push_back(m.*member);
+    out.write(fmt::format("/granrad/materials/{}", property), column);
+  }
+}
+
+void write_walls(Hdf5Writer& out, const std::vector<Wall>& walls) {
+  std::vector<std::string> names;
+  std::vector<std::int32_t> role, corners;
+  std::vector<std::uint8_t> contact;
+  std::vector<double> temperature, emissivity, opens_at;
+  std::vector<Vec3> velocity, vertices;
+  std::vector<std::int64_t> vertex_begin{0}, triangle_begin{0};
+  for (const auto& w : walls) {
+    names.push_back(w.name);
+    role.push_back(static_cast<std::int32_t>(w.role));
+    contact.push_back(w.contact);
+    temperature.push_back(w.temperature_K);
+    emissivity.push_back(w.emissivity);
+    opens_at.push_back(w.opens_at_s);
+    velocity.push_back(w.velocity_m_s);
+    vertices.insert(vertices.end(), w.vertices.begin(), w.vertices.end());
+    for (const auto& t : w.triangles) corners.insert(corners.end(), t.begin(), t.end());
+    vertex_begin.push_back(static_cast<std::int64_t>(vertices.size()));
+    triangle_begin.push_back(static_cast<std::int64_t>(corners.size() / 3));
+  }
+  const std::string at = "/granrad/walls/";
+  out.write(at + "name", names);
+  out.write(at + "role", role);
+  out.write(at + "contact", contact);
+  out.write(at + "temperature_K", temperature);
+  out.write(at + "emissivity", emissivity);
+  out.write(at + "opens_at_s", opens_at);
+  write_vectors(out, at + "velocity_m_s", velocity);
+  write_vectors(out, at + "vertices_m", vertices);
+  out.write(at + "vertex_begin", vertex_begin);
+  out.write(at + "triangles", corners.data(), corners.size() / 3, 3);
+  out.write(at + "triangle_begin", triangle_begin);
+}
+
+void write_state(Hdf5Writer& out, const StateBlocks& state) {
+  out.group("/granrad/state");
+  for (const auto& [block, columns] : state) {
+    out.group("/granrad/state/" + block);
+    for (const auto& [name, values] : columns.integers)
+      out.write(fmt::format("/granrad/state/{}/{}", block, name), values);
+    for (const auto& [name, values] : columns.reals)
+      out.write(fmt::format("/granrad/state/{}/{}", block, name), values);
+  }
+}
+
+}  // namespace
+
+void write_frame(const std::filesystem::path& file, const Bed& bed, const StateBlocks& state,
+                 const std::map<std::string, std::vector<double>>& extra) {
+  check(file, bed, extra);
+  Hdf5Writer out(file);
+  write_vtk(out, bed, extra);
+  out.group("/granrad");
+  out.attribute("/granrad", "format", frame_format);
+  out.attribute("/granrad", "version", std::vector<std::int64_t>{frame_version});
+  out.attribute("/granrad", "program_version", program_version());
+  out.attribute("/granrad", "git_sha", program_git_sha());
+  out.attribute("/granrad", "time_s", bed.time_s);
+  out.attribute("/granrad", "step", std::vector<std::int64_t>{bed.step});
+  out.attribute("/granrad", "next_id", std::vector<std::int64_t>{bed.next_id});
+  for (const auto& [name, source] : particle_links()) out.link(source, "/granrad/particles/" + name);
+  write_contacts(out, bed.contacts);
+  write_materials(out, bed.materials);
+  write_walls(out, bed.walls);
+  write_vectors(out, "/granrad/box", {bed.box.min, bed.box.max});
+  out.write("/granrad/periodic", std::vector<std::uint8_t>(bed.periodic.begin(), bed.periodic.end()));
+  write_state(out, state);
+  out.commit();
+}
+
+}  // namespace granrad

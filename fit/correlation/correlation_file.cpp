@@ -1,0 +1,199 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "dem/base/error.h"
+#include "dem/base/text_file.h"
+#include "dem/base/toml_reader.h"
+#include "fit/correlation/correlation.h"
+
+namespace granrad {
+
+namespace {
+
+constexpr int file_version = 1;
+constexpr const char* provenance_keys[] = {"source", "method", "inputs", "created_by", "note"};
+
+/// Name and place of every number of RowStatistics, for reading and for writing.
+struct StatisticsField {
+  const char* key;
+  double RowStatistics::*value;
+  bool signed_value = false;
+};
+constexpr StatisticsField statistics_fields[] = {
+    {"pp_samples", &RowStatistics::pp_samples},
+    {"pw_samples", &RowStatistics::pw_samples},
+    {"pp_rmse", &RowStatistics::pp_rmse},
+    {"pw_rmse", &RowStatistics::pw_rmse},
+    {"pp_ray_noise", &RowStatistics::pp_ray_noise},
+    {"pw_ray_noise", &RowStatistics::pw_ray_noise},
+    {"pp_scatter", &RowStatistics::pp_scatter},
+    {"pw_scatter", &RowStatistics::pw_scatter},
+    {"pp_held_out_rmse", &RowStatistics::pp_held_out_rmse},
+    {"pw_held_out_rmse", &RowStatistics::pw_held_out_rmse},
+    {"closure_mean", &RowStatistics::closure_mean, true},
+    {"closure_rms", &RowStatistics::closure_rms},
+};
+
+RowStatistics read_statistics(TomlTable table) {
+  RowStatistics statistics;
+  if (!table.present()) return statistics;
+  for (const auto& field : statistics_fields)
+    statistics.*field.value =
+        table.number(field.key, {.unit = "1", .min = field.signed_value ? -1e300 : 0}, 0);
+  const NumberRule error{.unit = "1", .min = 0};
+  if (table.has("pp_standard_error"))
+    statistics.pp_standard_error = table.number_list("pp_standard_error", error, 1);
+  if (table.has("pw_standard_error"))
+    statistics.pw_standard_error = table.number_list("pw_standard_error", error, 1);
+  return statistics;
+}
+
+std::vector<double> read_coefficients(TomlTable& row, const char* key, std::size_t count, const char* form) {
+  auto values = row.number_list(key, {}, 1);
+  if (row.has(key) && values.size() != count)
+    row.problem(key, fmt::format("{} coefficients (form \"{}\" takes {}) give exactly {}", values.size(),
+                                 form, count, count));
+  return values;
+}
+
+CorrelationRow read_row(TomlTable& table, CorrelationForm form) {
+  CorrelationRow row;
+  row.solid_fraction =
+      table.number("solid_fraction", {.unit = "1",
+                                      .min = 0,
+                                      .max = 0.7405,
+                                      .min_exclusive = true,
+                                      .why = "volume of solid per volume; 0.7405 is the densest"});
+  row.pp = read_coefficients(table, "pp", pp_coefficient_count(form), to_string(form));
+  row.pw = read_coefficients(table, "pw", pw_coefficient_count(form), to_string(form));
+  row.statistics = read_statistics(table.table("statistics"));
+  if (form == CorrelationForm::transmittance && row.pp.size() == 2 && row.pw.size() == 3) {
+    if (row.pp[0] < 0 || row.pp[1] <= 0)
+      table.problem("pp", "a or b is negative (F would exceed the unobstructed value) both must be positive");
+    if (row.pw[0] <= 0 || row.pw[1] < 0 || row.pw[2] <= 0)
+      table.problem("pw", "t0, c or e is negative (F would grow with distance) all must be positive");
+  }
+  return row;
+}
+
+void read_rows(TomlTable& root, CorrelationTable& table) {
+  auto rows = root.tables("row");
+  if (rows.empty()) root.problem("row", "no [[row]] (a table needs at least one solid fraction) add [[row]]");
+  for (auto& entry : rows) {
+    table.rows.push_back(read_row(entry, table.form));
+    const auto count = table.rows.size();
+    if (count > 1 && entry.has("solid_fraction") &&
+        !(table.rows[count - 1].solid_fraction > table.rows[count - 2].solid_fraction))
+      entry.problem("solid_fraction",
+                    fmt::format("{} after {} (rows ascend in solid fraction, each once) sort them",
+                                table.rows[count - 1].solid_fraction, table.rows[count - 2].solid_fraction));
+  }
+}
+
+CorrelationTable read_table(TomlDocument document, const std::string& name) {
+  auto root = document.root();
+  CorrelationTable table;
+  table.name = name;
+  root.choice("format", {"granrad.correlation"});
+  root.integer("version", 1, file_version);
+  table.title = root.string("title", "");
+  table.form = root.choice("form", {"cubic", "transmittance"}) == "transmittance"
+                   ? CorrelationForm::transmittance
+                   : CorrelationForm::cubic;
+  root.choice("pp_distance", {"centre_distance_over_d"});
+  table.pw_distance =
+      root.choice("pw_distance", {"centre_to_plane_over_d", "h_plus_r_over_d"}) == "h_plus_r_over_d"
+          ? WallDistance::h_plus_r_over_d
+          : WallDistance::centre_to_plane_over_d;
+  if (table.form == CorrelationForm::transmittance && table.pw_distance == WallDistance::h_plus_r_over_d)
+    root.problem("pw_distance",
+                 "\"h_plus_r_over_d\" (form \"transmittance\" is defined for h/d, contact at 0.5) use "
+                 "\"centre_to_plane_over_d\"");
+  table.pp_cutoff = root.number("pp_cutoff", {.unit = "1",
+                                              .min = 1,
+                                              .max = largest_pp_cutoff,
+                                              .min_exclusive = true,
+                                              .why = "d* of the farthest pair, contact is 1"});
+  table.pw_cutoff = root.number(
+      "pw_cutoff", {.unit = "1", .min = 1, .min_exclusive = true, .why = "d* of the farthest wall"});
+  table.clip =
+      root.number("clip", {.unit = "1", .min = 0, .max = 1e-3, .why = "a view factor is never negative"}, 0);
+  read_rows(root, table);
+  auto provenance = root.table("provenance");
+  for (const char* key : provenance_keys)
+    if (provenance.has(key)) table.provenance.emplace_back(key, provenance.string(key));
+  document.finish();
+  return table;
+}
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\')
+      out += '\\', out += c;
+    else if (c == '\n')
+      out += "\\n";
+    else if (static_cast<unsigned char>(c) < 0x20)
+      out += ' ';
+    else
+      out += c;
+  }
+  return out + "\"";
+}
+
+/// Shortest text that reads back as the same double.
+std::string number_text(double v) {
+  return fmt::format("{}", v);
+}
+
+std::string list_text(const std::vector<double>& values) {
+  return fmt::format("[{}]", fmt::join(values, ", "));
+}
+
+std::string error_text(const std::vector<double>& errors) {
+  return fmt::format("[{:.3g}]", fmt::join(errors, ", "));
+}
+
+std::string statistics_text(const RowStatistics& statistics) {
+  std::string out;
+  for (const auto& field : statistics_fields)
+    if (statistics.*field.value != 0) out += fmt::format("{} = {:.5g}\n", field.key, statistics.*field.value);
+  if (!statistics.pp_standard_error.empty())
+    out += "pp_standard_error = " + error_text(statistics.pp_standard_error) + "\n";
+  if (!statistics.pw_standard_error.empty())
+    out += "pw_standard_error = " + error_text(statistics.pw_standard_error) + "\n";
+  return out.empty() ? "" : "[row.statistics]\n" + out;
+}
+
+}  // namespace
+
+CorrelationTable read_correlation(const std::filesystem::path& file) {
+  return read_table(TomlDocument::from_file(file), file.string());
+}
+
+CorrelationTable parse_correlation(const std::string& text, const std::string& name) {
+  return read_table(TomlDocument::from_string(text, name), name);
+}
+
+std::string correlation_text(const CorrelationTable& table) {
+  std::string out = fmt::format(
+      "format = \"granrad.correlation\"\nversion = {}\ntitle = {}\nform = \"{}\"\n"
+      "pp_distance = \"centre_distance_over_d\"\npw_distance = \"{}\"\npp_cutoff = {}\npw_cutoff = {}\nclip "
+      "= {}\n",
+      file_version, quoted(table.title), to_string(table.form), to_string(table.pw_distance),
+      number_text(table.pp_cutoff), number_text(table.pw_cutoff), number_text(table.clip));
+  for (const auto& row : table.rows)
+    out +=
+        fmt::format("\n[[row]]\nsolid_fraction = {}\npp = {}\npw = {}\n{}", number_text(row.solid_fraction),
+                    list_text(row.pp), list_text(row.pw), statistics_text(row.statistics));
+  if (!table.provenance.empty()) out += "\n[provenance]\n";
+  for (const auto& [key, text] : table.provenance) out += fmt::format("{} = {}\n", key, quoted(text));
+  return out;
+}
+
+void write_correlation(const std::filesystem::path& file, const CorrelationTable& table) {
+  write_text_file(file, correlation_text(table));
+}
+
+}  // namespace granrad

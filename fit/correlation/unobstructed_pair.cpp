@@ -1,0 +1,35 @@
+#include "fit/correlation/unobstructed_pair.h"
+
+#include <array>
+#include <cstddef>
+
+#include "raytrace/exact.h"
+
+namespace granrad {
+
+namespace {
+
+constexpr int intervals = 4096;
+
+std::array<double, intervals + 2> tabulate() {
+  std::array<double, intervals + 2> table{};
+  table[0] = 1.0 / 16;  // far away
+  for (int k = 1; k <= intervals; ++k) {
+    const double d_star = static_cast<double>(intervals) / k;
+    table[k] = exact_two_sphere(0.5, 0.5, d_star) * d_star * d_star;
+  }
+  table[intervals + 1] = table[intervals];
+  return table;
+}
+
+}  // namespace
+
+double unobstructed_pair(double d_star) {
+  static const auto table = tabulate();
+  if (d_star < 1) d_star = 1;
+  const double at = intervals / d_star;
+  const auto k = static_cast<std::size_t>(at);
+  return (table[k] + (at - static_cast<double>(k)) * (table[k + 1] - table[k])) / (d_star * d_star);
+}
+
+}  // namespace granrad

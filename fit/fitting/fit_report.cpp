@@ -1,0 +1,152 @@
+#include "fit/fitting/fit_report.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dem/page/html_report.h"
+#include "raytrace/exact.h"
+
+namespace granrad {
+
+namespace {
+
+std::string with_error(double value, const std::vector<double>& errors, std::size_t k) {
+  return k < errors.size() ? fmt::format("{:.5g} ± {:.1g}", value, errors[k]) : fmt::format("{:.5g}", value);
+}
+
+void coefficient_table(HtmlReport& report, const std::vector<RowFit>& rows, bool walls,
+                       CorrelationForm form) {
+  std::vector<std::string> header = {"solid fraction"};
+  if (form == CorrelationForm::cubic)
+    header.insert(header.end(), {"c0", "c1", "c2", "c3"});
+  else if (walls)
+    header.insert(header.end(), {"t0", "c", "e"});
+  else
+    header.insert(header.end(), {"a", "b"});
+  std::vector<std::vector<std::string>> lines;
+  for (const auto& row : rows) {
+    const auto& fit = walls ? row.pw : row.pp;
+    auto& line = lines.emplace_back(1, fmt::format("{:.4f}", row.row.solid_fraction));
+    for (std::size_t k = 0; k < fit.coefficient.size(); ++k)
+      line.push_back(with_error(fit.coefficient[k], fit.standard_error, k));
+  }
+  report.table(header, lines);
+}
+
+void statistics_table(HtmlReport& report, const std::vector<RowFit>& rows, bool walls) {
+  std::vector<std::vector<std::string>> lines;
+  for (const auto& row : rows) {
+    const auto& fit = walls ? row.pw : row.pp;
+    lines.push_back({fmt::format("{:.4f}", row.row.solid_fraction), fmt::format("{}", row.origins.size()),
+                     fmt::format("{:.0f}", fit.samples), fmt::format("{:.3e}", fit.rmse),
+                     fmt::format("{:.3e}", fit.ray_noise), fmt::format("{:.3e}", fit.scatter),
+                     fit.held_out_rmse > 0 ? fmt::format("{:.3e}", fit.held_out_rmse) : "one snapshot"});
+  }
+  report.table({"solid fraction", "snapshots", "samples", "RMSE", "of it ray noise",
+                "scatter at one distance", "held-out RMSE"},
+               lines);
+}
+
+constexpr double smallest_on_log_axis = 1e-7;  ///< below, a view factor is nothing
+
+/// Traced means with the curve through them, one colour a solid fraction.
+Chart curves(const std::vector<RowFit>& rows, bool walls, bool logarithmic) {
+  Chart chart{.title = walls ? "Particle to wall" : "Particle to particle",
+              .x_label = walls ? "h / d, centre to plane over diameter" : "d*, centre distance over diameter",
+              .y_label = walls ? "F_pw" : "F_pp",
+              .series = {},
+              .log_x = logarithmic,
+              .log_y = logarithmic};
+  for (const auto& row : rows) {
+    const auto& fit = walls ? row.pw : row.pp;
+    Series traced{.label = fmt::format("traced, {:.3f}", row.row.solid_fraction),
+                  .x = {},
+                  .y = {},
+                  .error = {},
+                  .points = true};
+    for (const auto& bin : fit.bins) {
+      if (logarithmic && bin.mean < smallest_on_log_axis) continue;
+      traced.x.push_back(bin.distance);
+      traced.y.push_back(bin.mean);
+      traced.error.push_back(bin.mean_error);
+    }
+    chart.series.push_back(traced);
+  }
+  for (const auto& row : rows) {
+    const auto& fit = walls ? row.pw : row.pp;
+    Series line{.label = fmt::format("fit, {:.3f}", row.row.solid_fraction), .x = {}, .y = {}, .error = {}};
+    for (const auto& bin : fit.bins) {
+      if (logarithmic && bin.fitted < smallest_on_log_axis) continue;
+      line.x.push_back(bin.distance);
+      line.y.push_back(bin.fitted);
+    }
+    chart.series.push_back(line);
+  }
+  return chart;
+}
+
+/// What the curve misses in the mean, and the scatter no curve can remove.
+Chart residuals(const RowFit& row, bool walls) {
+  const auto& fit = walls ? row.pw : row.pp;
+  Chart chart{.title = fmt::format("{} at solid fraction {:.3f}: traced mean minus fit, and scatter",
+                                   walls ? "F_pw" : "F_pp", row.row.solid_fraction),
+              .x_label = walls ? "h / d" : "d*",
+              .y_label = walls ? "difference in F_pw" : "difference in F_pp",
+              .series = {}};
+  Series mean{
+      .label = "traced mean − fit, one standard error", .x = {}, .y = {}, .error = {}, .points = true};
+  Series scatter{.label = "scatter of single values at this distance (noise-free, one sigma)",
+                 .x = {},
+                 .y = {},
+                 .error = {}};
+  for (const auto& bin : fit.bins) {
+    if (bin.count < 2) continue;
+    mean.x.push_back(bin.distance);
+    mean.y.push_back(bin.mean - bin.fitted);
+    mean.error.push_back(bin.mean_error);
+    scatter.x.push_back(bin.distance);
+    scatter.y.push_back(std::sqrt(std::max(0.0, bin.scatter2)));
+  }
+  chart.series = {mean, scatter};
+  return chart;
+}
+
+void closure_table(HtmlReport& report, const std::vector<RowFit>& rows) {
+  std::vector<std::vector<std::string>> lines;
+  for (const auto& row : rows)
+    lines.push_back({fmt::format("{:.4f}", row.row.solid_fraction),
+                     fmt::format("{:+.4f}", row.row.statistics.closure_mean),
+                     fmt::format("{:.4f}", row.row.statistics.closure_rms)});
+  report.table({"solid fraction", "mean of row sum − 1", "rms"}, lines);
+}
+
+}  // namespace
+
+void write_fit_report(const std::filesystem::path& file, const CorrelationTable& table,
+                      const std::vector<RowFit>& rows) {
+  HtmlReport report(table.title.empty() ? "View factor correlation" : table.title);
+  report.paragraph(
+      table.form == CorrelationForm::cubic
+          ? "F = c0 + c1/d* + c2/d*² + c3/d*³ by unweighted least squares over all pairs, invisible ones "
+            "included."
+          : "Pairs: the exact two-sphere factor times exp(−a (d* − 1)^b). Walls: the exact sphere-to-polygon "
+            "factor times t0 exp(−c (h/d − 1/2)^e). Unweighted least squares over all pairs, invisible ones "
+            "included.");
+  for (const bool walls : {false, true}) {
+    report.heading(walls ? "Particle to wall" : "Particle to particle");
+    coefficient_table(report, rows, walls, table.form);
+    statistics_table(report, rows, walls);
+    report.chart(curves(rows, walls, false));
+    if (!walls) report.chart(curves(rows, walls, true));
+    for (const auto& row : rows) report.chart(residuals(row, walls));
+  }
+  report.heading("Closure");
+  report.paragraph(
+      "Row sums of the particles with this table on the snapshots it was fitted to, before any closing.");
+  closure_table(report, rows);
+  report.write(file);
+}
+
+}  // namespace granrad

@@ -1,0 +1,131 @@
+#include "fit/fitting/samples.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "dem/base/error.h"
+#include "dem/bed/cell_grid.h"
+#include "fit/correlation/correlation_source.h"
+#include "fit/correlation/unobstructed_pair.h"
+#include "raytrace/exact.h"
+
+namespace granrad {
+
+namespace {
+
+/// Hits of row i that ended on surface j, and their variance.
+struct Count {
+  double hits = 0, variance = 0;
+};
+
+Count count_between(const HitCounts& counts, std::size_t i, std::size_t j) {
+  const auto first = counts.pattern.column.begin() + counts.pattern.row_begin[i];
+  const auto last = counts.pattern.column.begin() + counts.pattern.row_begin[i + 1];
+  const auto at = std::lower_bound(first, last, static_cast<std::int32_t>(j));
+  if (at == last || *at != static_cast<std::int32_t>(j)) return {};
+  const auto k = at - counts.pattern.column.begin();
+  const double hits = static_cast<double>(counts.hits[k]), launched = static_cast<double>(counts.launched[i]);
+  return {hits, count_variance_factor(counts, i, k) * hits * (1 - hits / launched)};
+}
+
+/// Adds the merged estimate of F_ij.
+void add_sample(const HitCounts& counts, std::size_t i, std::size_t j, double distance, double unobstructed,
+                DistanceSamples& samples) {
+  const double weight = static_cast<double>(counts.launched[i]) / counts.area_m2[i] +
+                        static_cast<double>(counts.launched[j]) / counts.area_m2[j];
+  const Count ij = count_between(counts, i, j), ji = count_between(counts, j, i);
+  const double per_hit = 1 / (weight * counts.area_m2[i]);
+  samples.distance.push_back(distance);
+  samples.factor.push_back((ij.hits + ji.hits) * per_hit);
+  samples.variance.push_back((ij.variance + ji.variance) * per_hit * per_hit);
+  samples.unobstructed.push_back(unobstructed);
+}
+
+void refuse_unfit(const Enclosure& enclosure, const HitCounts& counts, const std::string& origin) {
+  std::vector<std::string> problems;
+  if (enclosure.sphere_count() < 2)
+    problems.push_back(fmt::format("{}: {} spheres (a pair function needs at least two) trace a bed", origin,
+                                   enclosure.sphere_count()));
+  else if (const auto [low, high] = std::minmax_element(enclosure.radius_m.begin(), enclosure.radius_m.end());
+           *high > 1.01 * *low)
+    problems.push_back(
+        fmt::format("{}: radii = {:.4g} to {:.4g} m (correlations hold for equal spheres, within 1 %) "
+                    "fit sizes of one kind",
+                    origin, *low, *high));
+  if (counts.launched.size() != enclosure.surface_count())
+    problems.push_back(
+        fmt::format("{}: {} rows of counts for {} surfaces (the file is inconsistent) trace it again", origin,
+                    counts.launched.size(), enclosure.surface_count()));
+  for (std::size_t i = 0; problems.empty() && i < enclosure.sphere_count(); ++i)
+    if (counts.launched[i] <= 0)
+      problems.push_back(fmt::format(
+          "{}: sphere {} launched no rays (nothing is known of it) trace with more rays", origin, i));
+  if (!problems.empty()) throw InputError(problems);
+}
+
+DistanceSamples pair_samples(const Enclosure& enclosure, const HitCounts& counts, double cutoff) {
+  const std::size_t n = enclosure.sphere_count();
+  const double diameter_m =
+      2 * std::accumulate(enclosure.radius_m.begin(), enclosure.radius_m.end(), 0.0) / static_cast<double>(n);
+  std::vector<std::int32_t> all(n);
+  std::iota(all.begin(), all.end(), 0);
+  const CellGrid grid(enclosure.centre_m, all, cutoff * diameter_m, enclosure.box, {});
+  std::vector<DistanceSamples> rows(n);
+#pragma omp parallel
+  {
+    std::vector<std::pair<std::int32_t, double>> found;
+#pragma omp for schedule(dynamic, 32)
+    for (std::size_t i = 0; i < n; ++i) {
+      found.clear();
+      grid.visit_around(enclosure.centre_m[i], [&](std::int32_t j, const Vec3& p) {
+        const double d_star = norm(p - enclosure.centre_m[i]) / diameter_m;
+        if (static_cast<std::size_t>(j) > i && d_star < cutoff) found.emplace_back(j, d_star);
+      });
+      std::sort(found.begin(), found.end());
+      for (const auto& [j, d_star] : found)
+        add_sample(counts, i, static_cast<std::size_t>(j), d_star, unobstructed_pair(d_star), rows[i]);
+    }
+  }
+  DistanceSamples samples;
+  for (const auto& row : rows) samples.append(row);
+  return samples;
+}
+
+DistanceSamples wall_samples(const Enclosure& enclosure, const HitCounts& counts, std::size_t w) {
+  DistanceSamples samples;
+  const Wall& wall = enclosure.walls[w];
+  if (!wall.is_polygon()) return samples;
+  const Vec3 normal = polygon_normal(wall);
+  for (std::size_t i = 0; i < enclosure.sphere_count(); ++i)
+    add_sample(counts, i, enclosure.sphere_count() + w,
+               dot(enclosure.centre_m[i] - wall.vertices[0], normal) / (2 * enclosure.radius_m[i]),
+               exact_sphere_polygon(enclosure.centre_m[i], wall), samples);
+  return samples;
+}
+
+}  // namespace
+
+void DistanceSamples::append(const DistanceSamples& more) {
+  distance.insert(distance.end(), more.distance.begin(), more.distance.end());
+  factor.insert(factor.end(), more.factor.begin(), more.factor.end());
+  variance.insert(variance.end(), more.variance.begin(), more.variance.end());
+  unobstructed.insert(unobstructed.end(), more.unobstructed.begin(), more.unobstructed.end());
+}
+
+SampleSet make_samples(const Enclosure& enclosure, const HitCounts& counts, double pp_cutoff,
+                       const std::string& origin) {
+  refuse_unfit(enclosure, counts, origin);
+  SampleSet set;
+  set.origin = origin;
+  set.solid_fraction = solid_fraction(enclosure);
+  set.enclosure = enclosure;
+  set.pairs = pair_samples(enclosure, counts, pp_cutoff);
+  for (std::size_t w = 0; w < enclosure.walls.size(); ++w)
+    set.walls.push_back(wall_samples(enclosure, counts, w));
+  return set;
+}
+
+}  // namespace granrad

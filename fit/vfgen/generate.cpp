@@ -1,0 +1,110 @@
+#include "fit/vfgen/generate.h"
+
+#include <fmt/core.h>
+
+#include "dem/base/toml_reader.h"
+#include "dem/packing/packing.h"
+#include "raytrace/rays/view_factor_file.h"
+
+namespace granrad {
+
+namespace {
+
+/// FNV-1a, 32 bits: enough to tell settings apart.
+std::uint32_t fingerprint(const std::string& text) {
+  std::uint32_t h = 2166136261u;
+  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 16777619u;
+  return h;
+}
+
+std::string snapshot_dependencies(const GenerateSettings& s) {
+  return fmt::format("packing 1 {} {} {} {} {} {}", s.size_m.x, s.size_m.y, s.size_m.z, s.diameter_m,
+                     s.sweeps, s.seed);
+}
+
+std::string trace_dependencies(const GenerateSettings& s) {
+  return fmt::format("{} trace {} {} {} {}", snapshot_dependencies(s), view_factor_version,
+                     to_string(s.trace.method), s.trace.rays, s.trace.seed);
+}
+
+std::string name_of(double solid_fraction, int number, const std::string& dependencies) {
+  return fmt::format("phi_{:.4f}_{:02}_{:08x}", solid_fraction, number,
+                     fingerprint(fmt::format("{} {} {}", dependencies, solid_fraction, number)));
+}
+
+void read_snapshot_settings(TomlTable table, GenerateSettings& s) {
+  s.solid_fractions = table.number_list("solid_fractions",
+                                        {.unit = "1",
+                                         .min = 0,
+                                         .max = 0.6,
+                                         .min_exclusive = true,
+                                         .why = "0.6 is the densest disordered packing"},
+                                        1);
+  s.size_m = table.vec3("size_m", {.unit = "m", .min = 0, .min_exclusive = true});
+  s.diameter_m = table.number("diameter_m", {.unit = "m", .min = 0, .min_exclusive = true});
+  for (int axis = 0; axis < 3; ++axis)
+    if (s.size_m[axis] > 0 && s.diameter_m > 0.5 * s.size_m[axis])
+      table.problem("diameter_m",
+                    fmt::format("{} (the box is {} wide in {}: at least two diameters) enlarge size_m",
+                                s.diameter_m, s.size_m[axis], "xyz"[axis]));
+  s.count = static_cast<int>(table.integer("count", 1, 1000, 1));
+  s.sweeps = static_cast<int>(table.integer("sweeps", 0, 1000000, 100));
+  s.seed = static_cast<std::uint64_t>(table.integer("seed", 0, std::numeric_limits<std::int64_t>::max(), 1));
+}
+
+void read_trace_settings(TomlTable table, GenerateSettings& s) {
+  s.trace.method = table.choice("method", {"lines", "embree"}, "lines") == "lines" ? TraceMethod::lines
+                                                                                   : TraceMethod::embree;
+  s.trace.rays =
+      table.number("rays", {.unit = "1", .min = 100, .max = 1e9, .why = "rays per particle"}, 10000);
+  s.trace.seed = s.seed;
+}
+
+void read_fit_settings(TomlTable table, GenerateSettings& s) {
+  const auto form = table.choice("form", {"both", "cubic", "transmittance"}, "both");
+  if (form != "transmittance") s.forms.push_back(CorrelationForm::cubic);
+  if (form != "cubic") s.forms.push_back(CorrelationForm::transmittance);
+  s.cutoff =
+      table.number("cutoff", {.unit = "1", .min = 1.5, .max = largest_pp_cutoff, .why = "d* of a pair"}, 10);
+}
+
+}  // namespace
+
+GenerateSettings read_generate_settings(const std::filesystem::path& config) {
+  auto document = TomlDocument::from_file(config);
+  auto root = document.root();
+  GenerateSettings settings;
+  settings.title = root.string("title", "");
+  read_snapshot_settings(root.table("snapshots"), settings);
+  read_trace_settings(root.table("trace"), settings);
+  read_fit_settings(root.table("fit"), settings);
+  document.finish();
+  return settings;
+}
+
+Bed packed_bed(const GenerateSettings& settings, double solid_fraction, int number) {
+  PackingRequest request;
+  request.where.box = {{0, 0, 0}, settings.size_m};
+  request.radius_m = equal_radii(request.where.box, solid_fraction, 0.5 * settings.diameter_m);
+  request.seed = settings.seed * 1000 + static_cast<std::uint64_t>(number);
+  request.equilibration_sweeps = settings.sweeps;
+  Bed bed;
+  bed.materials.emplace_back();
+  bed.box = request.where.box;
+  for (auto& wall : box_walls(bed.box)) {
+    wall.role = WallRole::isothermal;
+    bed.walls.push_back(wall);
+  }
+  for (const auto& centre : pack_spheres(request)) bed.add(centre, {}, 0.5 * settings.diameter_m, 300);
+  return bed;
+}
+
+std::string snapshot_name(const GenerateSettings& settings, double solid_fraction, int number) {
+  return name_of(solid_fraction, number, snapshot_dependencies(settings));
+}
+
+std::string traced_name(const GenerateSettings& settings, double solid_fraction, int number) {
+  return name_of(solid_fraction, number, trace_dependencies(settings));
+}
+
+}  // namespace granrad

@@ -1,0 +1,61 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "dem/bed/bed.h"
+#include "fit/fitting/fit_correlation.h"
+#include "fit/vfgen/trace_snapshot.h"
+
+namespace granrad {
+
+/// What `vfgen generate` reads (TOML; plain numbers are SI, strings may carry units; unknown keys are
+/// errors):
+///
+///   title = "..."
+///   [snapshots]
+///   solid_fractions = [0.02, 0.07]
+///   size_m = [0.010, 0.004, 0.050]   # closed box around the bed
+///   diameter_m = "0.8 mm"
+///   count = 4                        # independent snapshots of each solid fraction
+///   sweeps = 100                     # trial moves per sphere of the hard-sphere fluid
+///   seed = 1
+///   [trace]
+///   method = "lines" | "embree"
+///   rays = 10000                     # per particle
+///   [fit]
+///   form = "both" | "cubic" | "transmittance"
+///   cutoff = 10
+///
+/// Snapshots are equilibrated hard-sphere fluids. For the microstructure of a flow (it matters above a
+/// solid fraction of 0.37: 2 to 20 % in flux) run the flow and give its frames to vfgen trace and vfgen fit.
+///
+/// Written to the folder: snapshots/*.hdf, traced/*.h5, cubic.toml, transmittance.toml with their .html
+/// reports. The names of snapshots and traced files carry a fingerprint of every setting they depend on: what
+/// is there already is kept, so that an interrupted run goes on and a refit never retraces.
+struct GenerateSettings {
+  std::string title;
+  std::vector<double> solid_fractions;
+  Vec3 size_m;
+  double diameter_m = 0;
+  int count = 1, sweeps = 100;
+  std::uint64_t seed = 1;
+  TraceSettings trace;
+  std::vector<CorrelationForm> forms;
+  double cutoff = 10;
+};
+
+/// Throws IoError, or InputError with every problem located.
+GenerateSettings read_generate_settings(const std::filesystem::path& config);
+
+/// One snapshot as its settings make it: equal spheres in a closed box, seed fixed by the number of the
+/// snapshot.
+Bed packed_bed(const GenerateSettings& settings, double solid_fraction, int number);
+
+/// "phi_0.2500_02_9f86d081": solid fraction, number and fingerprint of what the snapshot depends on.
+std::string snapshot_name(const GenerateSettings& settings, double solid_fraction, int number);
+/// The same for its traced file.
+std::string traced_name(const GenerateSettings& settings, double solid_fraction, int number);
+
+}  // namespace granrad

@@ -1,0 +1,269 @@
+#include "fit/vfgen/trace_snapshot.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "dem/base/error.h"
+#include "dem/io/import_stl.h"
+#include "dem/io/snapshot.h"
+#include "fit/vfgen/overlaps.h"
+#include "raytrace/lines/line_sweep.h"
+#include "raytrace/mesh_check.h"
+
+namespace granrad {
+
+namespace {
+
+/// Three numbers separated by commas.
+std::optional<Vec3> parse_vec3(const std::string& text) {
+  Vec3 v;
+  const char *at = text.data(), *const end = text.data() + text.size();
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [rest, failure] = std::from_chars(at, end, v[axis]);
+    if (failure != std::errc{} || !std::isfinite(v[axis])) return {};
+    if (axis < 2 && (rest == end || *rest != ',')) return {};
+    at = axis < 2 ? rest + 1 : rest;
+  }
+  if (at != end) return {};
+  return v;
+}
+
+/// Walls end the periods a dump may have: centres stay in their image inside the old box.
+void add_box(Bed& bed, const Box& box) {
+  for (Vec3& centre : bed.position_m) centre = wrapped_into_box(bed, centre);
+  bed.periodic = {};
+  for (auto& wall : box_walls(box)) {
+    wall.contact = false;  // moved outwards where a sphere pokes through
+    wall.role = WallRole::isothermal;
+    bed.walls.push_back(wall);
+  }
+  bed.box = box;
+}
+
+/// Everything: no particle is left out.
+Box unbounded() {
+  return {{-1e30, -1e30, -1e30}, {1e30, 1e30, 1e30}};
+}
+
+/// Surface numbers of the walls of these names.
+std::vector<std::int32_t> walls_named(const Enclosure& enclosure, const std::vector<std::string>& names) {
+  std::vector<std::int32_t> found;
+  std::vector<std::string> problems;
+  std::string known;
+  for (const Wall& wall : enclosure.walls) known += (known.empty() ? "" : ", ") + wall.name;
+  for (const std::string& name : names) {
+    const auto at = std::find_if(enclosure.walls.begin(), enclosure.walls.end(),
+                                 [&](const Wall& wall) { return wall.name == name; });
+    if (at == enclosure.walls.end())
+      problems.push_back(fmt::format("--hot-walls: {} (no such wall; there are: {})", name,
+                                     known.empty() ? "none, add --box" : known));
+    else
+      found.push_back(static_cast<std::int32_t>(enclosure.sphere_count()) +
+                      static_cast<std::int32_t>(at - enclosure.walls.begin()));
+  }
+  if (!problems.empty()) throw InputError(problems);
+  return found;
+}
+
+void refuse_contradictions(const Enclosure& enclosure, const TraceSettings& settings, bool grey) {
+  std::vector<std::string> problems;
+  if (settings.method == TraceMethod::lines && grey)
+    problems.emplace_back(
+        "--emissivity: lines trace black surfaces (a path of reflections is no straight line) use "
+        "--method embree");
+  if (settings.method == TraceMethod::lines && settings.sampling == Sampling::plain)
+    problems.emplace_back("--sampling: random (lines have a sequence of their own) use --method embree");
+  if (enclosure.sphere_count() == 0 && (settings.error > 0 || !settings.hot_walls.empty()))
+    problems.emplace_back("--error: no particles (the stated errors are theirs) use --rays");
+  if (!problems.empty()) throw InputError(problems);
+}
+
+/// Directions that give the rays asked for: a line through a sphere is a ray from each of its two ends.
+LineOptions line_options(const TraceSettings& settings, std::vector<std::int32_t> hot_walls) {
+  LineOptions options;
+  const double per_direction = 2 * options.lines_per_disc * options.replicates;
+  options.directions = std::max(16, static_cast<int>(std::lround(settings.rays / per_direction)));
+  if (settings.error > 0) options.directions = 16;
+  options.seed = settings.seed;
+  options.threads = settings.threads;
+  options.target_error = settings.error;
+  options.hot_walls = std::move(hot_walls);
+  options.memory_limit_bytes = settings.memory_limit_bytes;
+  options.watch = settings.watch;
+  return options;
+}
+
+TraceOptions embree_options(const TraceSettings& settings, std::vector<std::int32_t> hot_walls) {
+  TraceOptions options;
+  options.rays_per_particle = settings.rays;
+  options.target_error = settings.error;
+  options.hot_walls = std::move(hot_walls);
+  options.sampling = settings.sampling;
+  options.seed = settings.seed;
+  options.threads = settings.threads;
+  options.memory_limit_bytes = settings.memory_limit_bytes;
+  options.watch = settings.watch;
+  return options;
+}
+
+HitCounts sweep(const Enclosure& enclosure, const LineOptions& options, TraceReport& spent) {
+  const auto start = std::chrono::steady_clock::now();
+  LineReport report;
+  HitCounts counts = sweep_view_factors(enclosure, options, &report);
+  spent.rays = report.ray_equivalents;
+  spent.rounds = report.rounds;
+  spent.error = report.estimated_error;
+  spent.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return counts;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
+  return text;
+}
+
+std::vector<double> surface_emissivities(const Enclosure& enclosure, const TraceSettings& settings) {
+  std::vector<double> emissivity(enclosure.surface_count(), settings.emissivity.value_or(1));
+  for (std::size_t w = 0; w < enclosure.walls.size(); ++w)
+    emissivity[enclosure.sphere_count() + w] =
+        settings.wall_emissivity.value_or(enclosure.walls[w].emissivity);
+  emissivity.back() = 1;
+  return emissivity;
+}
+
+/// Spheres in the order of the file (a Bed stands in ascending id, a dump often does not).
+void restore_file_order(Enclosure& enclosure, const std::vector<std::size_t>& file_row) {
+  if (file_row.empty()) return;
+  std::vector<std::size_t> order(enclosure.sphere_count());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return file_row[enclosure.particle[a]] < file_row[enclosure.particle[b]];
+  });
+  const Enclosure by_id = enclosure;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    enclosure.centre_m[k] = by_id.centre_m[order[k]];
+    enclosure.radius_m[k] = by_id.radius_m[order[k]];
+    enclosure.particle[k] = by_id.particle[order[k]];
+  }
+}
+
+/// A warning about deep overlaps. Throws InputError for particles in the same place.
+std::string check_overlaps(const Bed& bed, const Enclosure& enclosure, const std::string& file) {
+  const Overlaps overlaps = find_overlaps(bed, enclosure.particle);
+  if (overlaps.same_place.count > 0)
+    throw InputError(
+        fmt::format("{}: {} are in the same place (each hides the other from every ray) keep one of each",
+                    file, describe(bed, overlaps.same_place, overlaps.all)));
+  if (overlaps.deep.count == 0) return "";
+  return fmt::format(
+      "warning: {}: {} overlap by more than half a radius (no packing does: check the radius, the unit of "
+      "length, and for particles given twice)",
+      file, describe(bed, overlaps.deep, overlaps.all));
+}
+
+}  // namespace
+
+const char* to_string(TraceMethod method) {
+  return method == TraceMethod::lines ? "lines" : "embree";
+}
+
+Box parse_box(const std::string& text) {
+  const auto colon = text.find(':');
+  const auto size = parse_vec3(text.substr(0, colon));
+  const auto origin = colon == std::string::npos ? Vec3{} : parse_vec3(text.substr(colon + 1));
+  if (!size || !origin)
+    throw InputError(
+        fmt::format("--box: {} (not X,Y,Z or X,Y,Z:x0,y0,z0 in metres) try 0.010,0.004,0.050", text));
+  if (!(size->x > 0 && size->y > 0 && size->z > 0))
+    throw InputError(fmt::format("--box: {} (sizes must be positive) try 0.010,0.004,0.050", text));
+  return {*origin, *origin + *size};
+}
+
+SnapshotEnclosure read_enclosure(const std::filesystem::path& snapshot, const EnclosureSettings& settings) {
+  const Snapshot read = read_snapshot(snapshot, settings.radius_m);
+  Bed bed = read.bed;
+  const bool own_walls = !bed.walls.empty();
+  if (own_walls && settings.box)
+    throw InputError(
+        fmt::format("--box: {} has walls of its own (two sets of walls would hide each other) drop --box",
+                    snapshot.string()));
+  SnapshotEnclosure result;
+  if (!settings.stl.empty()) {
+    auto walls = import_stl(settings.stl, 1, "walls");
+    result.meshes = fmt::format("{}: {}", settings.stl.string(), describe(check_meshes(walls)));
+    for (auto& wall : walls) {
+      wall.contact = false;
+      bed.walls.push_back(std::move(wall));
+    }
+  }
+  if (settings.box) add_box(bed, *settings.box);
+  result.enclosure = make_enclosure(bed, settings.box || own_walls ? bed.box : unbounded());
+  result.overlaps = check_overlaps(bed, result.enclosure, snapshot.string());
+  restore_file_order(result.enclosure, read.file_row);
+  result.left_out = bed.size() - result.enclosure.sphere_count();
+  return result;
+}
+
+ViewFactorFile trace(const Enclosure& enclosure, const TraceSettings& settings, const std::string& origin) {
+  const bool grey = settings.emissivity || settings.wall_emissivity;
+  refuse_contradictions(enclosure, settings, grey);
+  const auto hot_walls = walls_named(enclosure, settings.hot_walls);
+  ViewFactorFile traced;
+  traced.enclosure = enclosure;
+  traced.method = to_string(settings.method);
+  traced.origin = origin;
+  traced.seed = settings.seed;
+  traced.error_target = settings.error;
+  traced.hot_walls = joined(settings.hot_walls);
+  traced.sampling = settings.method == TraceMethod::lines  ? "lines"
+                    : settings.sampling == Sampling::sobol ? "sobol"
+                                                           : "random";
+  if (grey) {
+    traced.emissivity = surface_emissivities(enclosure, settings);
+    traced.counts = trace_total_exchange(enclosure, traced.emissivity, embree_options(settings, hot_walls),
+                                         &traced.spent);
+  } else if (settings.method == TraceMethod::lines) {
+    traced.counts = sweep(enclosure, line_options(settings, hot_walls), traced.spent);
+  } else {
+    traced.counts = trace_view_factors(enclosure, embree_options(settings, hot_walls), &traced.spent);
+  }
+  traced.check = self_check(enclosure, traced.counts);
+  ClosureReport report;
+  traced.closed = close(one_way_estimate(traced.counts), traced.closure, report);
+  traced.closure_correction_max = report.largest_correction;
+  return traced;
+}
+
+std::string spent_line(const ViewFactorFile& traced) {
+  const TraceReport& spent = traced.spent;
+  std::string line = fmt::format("spent {:.3g} rays in {} round{}, {:.2g} s", static_cast<double>(spent.rays),
+                                 spent.rounds, spent.rounds == 1 ? "" : "s", spent.seconds);
+  if (traced.enclosure.sphere_count() > 0) {
+    line += fmt::format("; error {:.3g} % of the ", 100 * spent.error);
+    line += traced.hot_walls.empty() ? "particle-wall sums"
+                                     : fmt::format("particle fluxes from {}", traced.hot_walls);
+    if (traced.error_target > 0) line += fmt::format(" ({:.3g} % asked for)", 100 * traced.error_target);
+  }
+  if (traced.counts.thinning_unit > 1)
+    line += fmt::format(
+        "; to stay within the memory allowed, pairs of fewer than {0} hits were kept at random, as {0}",
+        traced.counts.thinning_unit);
+  return line;
+}
+
+std::string self_check_line(const SelfCheck& check) {
+  return fmt::format(
+      "self-check {}: closure {:.1e}, reciprocity chi2 {:.3f}, mean chord {}, leaked rays {}",
+      check.failed.empty() ? "passed" : "FAILED (" + check.failed + ")", check.closure_defect,
+      check.reciprocity_chi2,
+      check.mean_chord_ratio > 0 ? fmt::format("{:.4f} of 4V/S", check.mean_chord_ratio) : "not known",
+      check.leaked);
+}
+
+}  // namespace granrad

@@ -1,0 +1,180 @@
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <functional>
+#include <optional>
+
+#include "dem/base/error.h"
+#include "dem/base/program.h"
+#include "fit/vfgen/vfgen_commands.h"
+
+namespace {
+
+using namespace granrad;
+using Body = std::function<int(Verbosity)>;
+
+/// Options as text, until they are checked.
+struct TraceText {
+  std::string method = "embree", sampling = "sobol", box;
+};
+
+/// A number in [low, high]; unlike CLI::Range it refuses NaN and what follows a number.
+CLI::Validator number_in(double low, double high) {
+  const auto problem = [low, high](std::string& text) -> std::string {
+    double value = 0;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool whole = failure == std::errc{} && end == text.data() + text.size();
+    if (whole && value >= low && value <= high) return {};
+    return fmt::format("{} (must be a number in [{:g}, {:g}])", text, low, high);
+  };
+  return {problem, fmt::format("in [{:g}, {:g}]", low, high)};
+}
+
+/// CLI11 would let -1 wrap around.
+CLI::Validator seed_number() {
+  const auto problem = [](std::string& text) -> std::string {
+    std::int64_t value = 0;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (failure == std::errc{} && end == text.data() + text.size() && value >= 0) return {};
+    return fmt::format("{} (must be a whole number >= 0)", text);
+  };
+  return {problem, ">= 0"};
+}
+
+void add_trace(CLI::App& app, Body& body) {
+  const auto command = std::make_shared<TraceCommand>();
+  const auto text = std::make_shared<TraceText>();
+  auto& sub = *app.add_subcommand("trace", "View factors of snapshots by ray tracing");
+  sub.add_option("SNAPSHOT", command->snapshots, "frame (.hdf), CSV or LIGGGHTS/LAMMPS text dump")
+      ->required();
+  sub.add_option("-o,--output", command->output,
+                 "HDF5 file; of several snapshots, number k goes to FILE_000k.h5")
+      ->required();
+  sub.add_option("--method", text->method, "embree: any walls; lines: convex boxes, faster")
+      ->check(CLI::IsMember({"embree", "lines"}))
+      ->capture_default_str();
+  auto* rays = sub.add_option("--rays", command->trace.rays, "rays per particle, walls in proportion to area")
+                   ->check(number_in(1, 1e9))
+                   ->capture_default_str();
+  sub.add_option(
+         "--error", command->trace.error,
+         "instead: rms error wanted, relative: of the particle-wall sums, or of the particle fluxes of "
+         "--hot-walls")
+      ->check(number_in(1e-6, 1))
+      ->excludes(rays);
+  sub.add_option("--hot-walls", command->trace.hot_walls,
+                 "names of walls: the stated error is that of the fluxes they alone send to the particles")
+      ->delimiter(',');
+  sub.add_option("--sampling", text->sampling,
+                 "of embree: scrambled Sobol points or independent random numbers")
+      ->check(CLI::IsMember({"sobol", "random"}))
+      ->capture_default_str();
+  sub.add_option("--memory", command->trace.memory_limit_bytes,
+                 "largest use, such as 512MiB; beyond, rare pairs are thinned out at random (default 4GiB)")
+      ->transform(CLI::AsSizeValue(true));
+  sub.add_option("--emissivity", command->trace.emissivity,
+                 "of the particles: total exchange areas of grey surfaces")
+      ->check(number_in(1e-6, 1));
+  sub.add_option("--wall-emissivity", command->trace.wall_emissivity,
+                 "of the walls; default: each wall's own")
+      ->check(number_in(1e-6, 1));
+  sub.add_option("--box", text->box,
+                 "six black walls: X,Y,Z in metres, corner at the origin or at :x0,y0,z0");
+  sub.add_option("--radius", command->enclosure.radius_m, "radius in metres, for files without one")
+      ->check(number_in(1e-12, 1e6));
+  sub.add_option("--walls", command->enclosure.stl, "STL file of walls, metres");
+  sub.add_option("--seed", command->trace.seed, "of the random numbers")
+      ->check(seed_number())
+      ->capture_default_str();
+  sub.add_option("--threads", command->trace.threads, "0: all; results do not depend on it")
+      ->check(CLI::Range(0, 4096));
+  sub.callback([&body, command, text] {
+    command->trace.method = text->method == "lines" ? TraceMethod::lines : TraceMethod::embree;
+    command->trace.sampling = text->sampling == "random" ? Sampling::plain : Sampling::sobol;
+    body = [command, text](Verbosity verbosity) {
+      if (!text->box.empty()) command->enclosure.box = parse_box(text->box);
+      return run_trace(*command, verbosity);
+    };
+  });
+}
+
+void add_fit(CLI::App& app, Body& body) {
+  const auto command = std::make_shared<FitCommand>();
+  const auto form = std::make_shared<std::string>("cubic"), pairs = std::make_shared<std::string>("all");
+  auto& sub = *app.add_subcommand("fit", "Correlation table from traced view factors");
+  sub.add_option("FILE", command->files, "HDF5 files of vfgen trace; equal solid fractions become one row")
+      ->required();
+  sub.add_option("-o,--output", command->output, "table, TOML")->required();
+  sub.add_option("--form", *form,
+                 "cubic: polynomial in 1/d*; transmittance: exact factor times exp(-a (d*-1)^b)")
+      ->check(CLI::IsMember({"cubic", "transmittance"}))
+      ->capture_default_str();
+  sub.add_option("--report", command->report, "HTML page of the fit");
+  sub.add_option("--cutoff", command->options.pp_cutoff, "largest d* of a pair")
+      ->check(number_in(1.5, largest_pp_cutoff))
+      ->capture_default_str();
+  sub.add_option("--pairs", *pairs, "all: invisible pairs count as F = 0; visible: they are left out")
+      ->check(CLI::IsMember({"all", "visible"}))
+      ->capture_default_str();
+  sub.add_option("--fit-walls", command->options.walls,
+                 "names of the walls F_pw is fitted on; default: the largest")
+      ->delimiter(',');
+  sub.callback([&body, command, form, pairs] {
+    command->options.form = *form == "cubic" ? CorrelationForm::cubic : CorrelationForm::transmittance;
+    command->options.visible_only = *pairs == "visible";
+    body = [command](Verbosity verbosity) { return run_fit(*command, verbosity); };
+  });
+}
+
+void add_generate(CLI::App& app, Body& body) {
+  const auto command = std::make_shared<GenerateCommand>();
+  auto& sub = *app.add_subcommand(
+      "generate", "Snapshots, view factors, tables and reports for a list of solid fractions");
+  sub.add_option("CONFIG", command->config, "TOML, see fit/vfgen/generate.h")->required();
+  sub.add_option("-o,--output", command->folder, "folder; what is there from the same settings is kept")
+      ->required();
+  sub.add_option("--threads", command->threads, "0: all; results do not depend on it")
+      ->check(CLI::Range(0, 4096));
+  sub.callback([&body, command] {
+    body = [command](Verbosity verbosity) { return run_generate(*command, verbosity); };
+  });
+}
+
+void add_check(CLI::App& app, Body& body) {
+  const auto table = std::make_shared<std::filesystem::path>();
+  auto& sub = *app.add_subcommand("check", "Bounds, range and closure of a correlation table");
+  sub.add_option("TABLE", *table, "table, TOML")->required();
+  sub.callback(
+      [&body, table] { body = [table](Verbosity verbosity) { return run_check(*table, verbosity); }; });
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("View factors of particle beds by ray tracing, and correlations fitted to them.", "vfgen");
+  app.set_version_flag("--version", fmt::format("vfgen {} ({})", program_version(), program_git_sha()));
+  app.require_subcommand(1);
+  app.fallthrough();
+  bool quiet = false, verbose = false;
+  auto* q = app.add_flag("-q,--quiet", quiet, "only results and errors");
+  app.add_flag("-v,--verbose", verbose, "say more")->excludes(q);
+  Body body;
+  add_trace(app, body);
+  add_fit(app, body);
+  add_generate(app, body);
+  add_check(app, body);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? exit_ok : exit_bad_input;
+  }
+  return run_program("vfgen", [&] {
+    install_signal_handlers();
+    return body({quiet ? -1 : verbose ? 1 : 0});
+  });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return run(argc, argv);
+}

@@ -1,0 +1,45 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "fit/fitting/fit_correlation.h"
+#include "fit/vfgen/trace_snapshot.h"
+
+namespace granrad {
+
+/// How much a command says: -1 quiet (errors and results only), 0, 1 verbose.
+struct Verbosity {
+  int level = 0;
+  bool quiet() const { return level < 0; }
+};
+
+/// vfgen trace: snapshots -> view factors. One snapshot is written to `output`; of several, snapshot k to
+/// output's name with _0001, _0002 ... before the extension.
+struct TraceCommand {
+  std::vector<std::filesystem::path> snapshots;
+  std::filesystem::path output;
+  EnclosureSettings enclosure;
+  TraceSettings trace;
+};
+int run_trace(const TraceCommand& command, Verbosity verbosity);
+
+/// vfgen fit: view factor files -> table and report. Files whose solid fractions agree are one row.
+struct FitCommand {
+  std::vector<std::filesystem::path> files;
+  std::filesystem::path output, report;
+  FitOptions options;
+};
+int run_fit(const FitCommand& command, Verbosity verbosity);
+
+/// vfgen check: findings on stdout; exit code 2 when any is a problem.
+int run_check(const std::filesystem::path& table, Verbosity verbosity);
+
+/// vfgen generate: see fit/vfgen/generate.h.
+struct GenerateCommand {
+  std::filesystem::path config, folder;
+  int threads = 0;
+};
+int run_generate(const GenerateCommand& command, Verbosity verbosity);
+
+}  // namespace granrad

@@ -1,0 +1,98 @@
+#include <fmt/core.h>
+
+#include <functional>
+#include <optional>
+
+#include "dem/base/error.h"
+#include "dem/base/hdf5_file.h"
+#include "dem/base/program.h"
+#include "fit/vfgen/vfgen_commands.h"
+
+namespace granrad {
+
+namespace {
+
+/// FILE.h5, or FILE_0003.h5 for the third of several.
+std::filesystem::path numbered(const std::filesystem::path& file, std::size_t number, std::size_t count) {
+  if (count == 1) return file;
+  auto name = file;
+  name.replace_filename(fmt::format("{}_{:04}{}", file.stem().string(), number, file.extension().string()));
+  return name;
+}
+
+void require_surfaces(const Enclosure& enclosure, const std::filesystem::path& snapshot) {
+  if (enclosure.sphere_count() == 0 && enclosure.walls.empty())
+    throw InputError(fmt::format("{}: no surface to trace (neither particles nor walls) add walls with --box",
+                                 snapshot.string()));
+}
+
+/// What would end a command after hours of tracing, found before: throws IoError.
+void require_files(const TraceCommand& command) {
+  std::string missing;
+  for (const auto& snapshot : command.snapshots)
+    if (!std::filesystem::exists(snapshot))
+      missing += fmt::format("{}{}: there is no such file", missing.empty() ? "" : "\n", snapshot.string());
+  if (!missing.empty()) throw IoError(missing);
+  std::error_code failure;  // the writer says what cannot be made
+  if (command.output.has_parent_path())
+    std::filesystem::create_directories(command.output.parent_path(), failure);
+  const Hdf5Writer writable(command.output);
+}
+
+/// Shows how far a trace is, each round from the start, and stops it at a signal.
+class ShownTrace {
+ public:
+  ShownTrace(std::string what, bool quiet) : what_(std::move(what)), quiet_(quiet) {}
+  bool operator()(double part) {
+    if (!progress_ || part < part_)
+      progress_.emplace(fmt::format("{}, round {}", what_, ++round_), 1.0, quiet_);
+    part_ = part;
+    progress_->update(part);
+    return interrupt_signal() == 0;
+  }
+
+ private:
+  std::string what_;
+  bool quiet_;
+  int round_ = 0;
+  double part_ = 0;
+  std::optional<Progress> progress_;
+};
+
+ViewFactorFile trace_shown(const Enclosure& enclosure, TraceSettings settings, const std::string& snapshot,
+                           bool quiet) {
+  ShownTrace shown("tracing " + snapshot, quiet);
+  settings.watch = std::ref(shown);
+  return trace(enclosure, settings, snapshot);
+}
+
+}  // namespace
+
+int run_trace(const TraceCommand& command, Verbosity verbosity) {
+  if (command.output.extension() != ".h5")
+    throw InputError(
+        fmt::format("--output: {} (view factors are HDF5) name it FILE.h5", command.output.string()));
+  require_files(command);
+  std::string failures;
+  for (std::size_t k = 0; k < command.snapshots.size() && !interrupt_signal(); ++k) {
+    const auto& snapshot = command.snapshots[k];
+    const auto read = read_enclosure(snapshot, command.enclosure);
+    require_surfaces(read.enclosure, snapshot);
+    if (read.left_out > 0)
+      fmt::print(stderr, "{}: {} particles with their centre outside the box were left out\n",
+                 snapshot.string(), read.left_out);
+    if (!read.overlaps.empty()) fmt::print(stderr, "{}\n", read.overlaps);
+    if (!read.meshes.empty() && !verbosity.quiet()) fmt::print(stderr, "{}\n", read.meshes);
+    const auto traced = trace_shown(read.enclosure, command.trace, snapshot.string(), verbosity.quiet());
+    const auto file = numbered(command.output, k + 1, command.snapshots.size());
+    write_view_factors(file, traced);
+    if (!verbosity.quiet())
+      fmt::print("{}: {} spheres, {} walls; {}\n  {}\n", file.string(), read.enclosure.sphere_count(),
+                 read.enclosure.walls.size(), self_check_line(traced.check), spent_line(traced));
+    if (!traced.check.failed.empty()) failures += fmt::format("\n{}: {}", file.string(), traced.check.failed);
+  }
+  if (!failures.empty()) throw NumericalError("self-check failed:" + failures);
+  return exit_ok;
+}
+
+}  // namespace granrad

@@ -1,0 +1,320 @@
+#include "raytrace/line_pass/line_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "dem/base/constants.h"
+#include "dem/base/error.h"
+#include "raytrace/embree/embree_tracer.h"
+#include "raytrace/facets.h"
+
+namespace granrad {
+
+namespace {
+
+constexpr double lines_on_a_face = 4096;
+constexpr double max_cells = 67108864;  // 2^26 lines of 4 bytes: 256 MiB per thread
+/// Corners closer than this share of the enclosure's size are one corner; planarity and convexity are judged
+/// by it.
+constexpr double corner_tolerance = 1e-7;
+
+struct Bounds {
+  Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
+  void include(const Vec3& p, double margin = 0) {
+    for (int k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], p[k] - margin);
+      high[k] = std::max(high[k], p[k] + margin);
+    }
+  }
+  Vec3 middle() const { return low.x > high.x ? Vec3{} : 0.5 * (low + high); }
+  double diameter() const { return low.x > high.x ? 0 : norm(high - low); }
+  std::vector<Vec3> corners() const {
+    if (low.x > high.x) return {Vec3{}};
+    std::vector<Vec3> all;
+    for (int k = 0; k < 8; ++k)
+      all.push_back({k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z});
+    return all;
+  }
+};
+
+/// Problems that make the enclosure unfit before any geometry can be judged.
+std::vector<std::string> shape_problems(const Enclosure& e) {
+  std::vector<std::string> problems;
+  for (int k = 0; k < 3; ++k)
+    if (e.periodic[k] && !(e.box.size()[k] > 0 && std::isfinite(e.box.size()[k])))
+      problems.push_back(
+          fmt::format("lines: period in {} = {} (must be positive)", "xyz"[k], e.box.size()[k]));
+  for (const Wall& wall : e.walls)
+    if (!wall.is_polygon())
+      problems.push_back(
+          fmt::format("lines: wall {} = mesh (lines need convex polygons) try embree", wall.name));
+    else if (wall.vertices.size() < 3 || !std::all_of(wall.vertices.begin(), wall.vertices.end(), is_finite))
+      problems.push_back(fmt::format("lines: wall {} (needs three finite vertices or more)", wall.name));
+  for (std::size_t i = 0; i < e.sphere_count(); ++i)
+    if (!is_finite(e.centre_m[i]) || !(e.radius_m[i] > 0) || !std::isfinite(e.radius_m[i])) {
+      problems.push_back(fmt::format("lines: particle {} = ({}, {}, {}), radius {} (must be finite)", i,
+                                     e.centre_m[i].x, e.centre_m[i].y, e.centre_m[i].z, e.radius_m[i]));
+      break;
+    }
+  return problems;
+}
+
+/// Replaces corners that nearly coincide by one, so that faces share edges bit by bit.
+void weld(std::vector<LineScene::Face>& faces, double tolerance) {
+  std::vector<Vec3> known;
+  for (auto& face : faces)
+    for (Vec3& p : face.corners) {
+      const auto same =
+          std::find_if(known.begin(), known.end(), [&](const Vec3& q) { return norm(p - q) < tolerance; });
+      if (same == known.end())
+        known.push_back(p);
+      else
+        p = *same;
+    }
+}
+
+/// Every directed edge has its reverse exactly once.
+bool edges_close(const std::vector<LineScene::Face>& faces) {
+  using Key = std::array<double, 6>;
+  std::map<Key, int> balance;
+  for (const auto& face : faces)
+    for (std::size_t k = 0; k < face.corners.size(); ++k) {
+      const Vec3 &a = face.corners[k], &b = face.corners[(k + 1) % face.corners.size()];
+      const Key forward{a.x, a.y, a.z, b.x, b.y, b.z}, back{b.x, b.y, b.z, a.x, a.y, a.z};
+      if (forward < back)
+        ++balance[forward];
+      else
+        --balance[back];
+    }
+  return !faces.empty() &&
+         std::all_of(balance.begin(), balance.end(), [](const auto& e) { return e.second == 0; });
+}
+
+/// As edges_close where edges on opposite borders of the box are one.
+bool edges_close_periodically(const std::vector<LineScene::Face>& faces, const Vec3& period,
+                              double tolerance) {
+  struct Edge {
+    Vec3 middle, way;
+    bool matched = false;
+  };
+  std::vector<Edge> edges;
+  for (const auto& face : faces)
+    for (std::size_t k = 0; k < face.corners.size(); ++k) {
+      const Vec3 &a = face.corners[k], &b = face.corners[(k + 1) % face.corners.size()];
+      edges.push_back({0.5 * (a + b), b - a});
+    }
+  const auto meet = [&](const Edge& a, const Edge& b) {
+    Vec3 apart = a.middle - b.middle;
+    for (int k = 0; k < 3; ++k)
+      if (period[k] > 0) apart[k] -= period[k] * std::round(apart[k] / period[k]);
+    return norm(apart) < tolerance && norm(a.way + b.way) < tolerance;
+  };
+  for (auto e = edges.begin(); e != edges.end(); ++e) {
+    if (e->matched) continue;
+    const auto other =
+        std::find_if(e + 1, edges.end(), [&](const Edge& o) { return !o.matched && meet(*e, o); });
+    if (other == edges.end()) return false;
+    other->matched = true;
+  }
+  return true;
+}
+
+/// Whether the walls close the directions that are not periodic.
+bool holds_volume(const Enclosure& e) {
+  if (e.periodic == std::array<bool, 3>{true, true, true}) return true;
+  Facets facets(0);
+  for (const Wall& wall : e.walls) facets.add(wall, 0, e.box.min, 1);
+  return facets.enclosed_volume(e.periodic).has_value();
+}
+
+std::vector<std::string> convexity_problems(const Enclosure& e, const std::vector<LineScene::Face>& faces,
+                                            double tolerance) {
+  std::vector<std::string> problems;
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    for (std::size_t g = 0; g < faces.size(); ++g) {
+      const auto outside = [&](const Vec3& p) {
+        return dot(p - faces[f].corners[0], faces[f].normal) < -tolerance;
+      };
+      if (std::any_of(faces[g].corners.begin(), faces[g].corners.end(), outside))
+        problems.push_back(
+            fmt::format("lines: wall {} stands behind wall {} (the walls must bound a convex space) "
+                        "try embree",
+                        e.walls[g].name, e.walls[f].name));
+    }
+  return problems;
+}
+
+std::vector<LineScene::Face> faces_about(const Enclosure& e, const Vec3& middle, double tolerance) {
+  std::vector<LineScene::Face> faces;
+  for (std::size_t w = 0; w < e.walls.size(); ++w) {
+    LineScene::Face face{e.walls[w].vertices, polygon_normal(e.walls[w]),
+                         static_cast<std::int32_t>(e.sphere_count() + w)};
+    for (Vec3& p : face.corners) p -= middle;
+    faces.push_back(std::move(face));
+  }
+  weld(faces, tolerance);
+  return faces;
+}
+
+/// 10 bits of each coordinate in turn (Morton order).
+std::uint32_t interleaved(const Vec3& at) {
+  std::uint32_t code = 0;
+  for (int bit = 9; bit >= 0; --bit)
+    for (int k = 0; k < 3; ++k) code = code << 1 | (static_cast<std::uint32_t>(at[k]) >> bit & 1);
+  return code;
+}
+
+/// Indices of the points, such that neighbours in space mostly follow each other.
+std::vector<std::int32_t> order_in_space(const std::vector<Vec3>& points, const Bounds& bounds) {
+  constexpr double cells = 1023.999;
+  const double scale = cells / std::max(bounds.diameter(), 1e-300);
+  using Coded = std::pair<std::uint32_t, std::int32_t>;
+  std::vector<Coded> codes(points.size()), other(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    codes[i] = {interleaved(scale * (points[i] - bounds.low)), static_cast<std::int32_t>(i)};
+  constexpr int digit = 10;
+  for (int shift = 0; shift < 30; shift += digit) {
+    std::uint32_t begin[1 << digit] = {}, sum = 0;
+    const auto bucket = [&](const Coded& c) -> std::uint32_t& { return begin[c.first >> shift & 1023]; };
+    for (const Coded& c : codes) ++bucket(c);
+    for (std::uint32_t& b : begin) sum += std::exchange(b, sum);
+    for (const Coded& c : codes) other[bucket(c)++] = c;
+    codes.swap(other);
+  }
+  std::vector<std::int32_t> order(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) order[i] = codes[i].second;
+  return order;
+}
+
+/// Largest distance by which a sphere pokes through a wall; collects the centres that stand behind one.
+double protrusion(const LineScene& scene, const Enclosure& e, std::vector<std::string>& problems) {
+  constexpr std::size_t enough = 20;
+  double largest = 0;
+  for (std::size_t i = 0; i < scene.x.size(); ++i)
+    for (const auto& face : scene.faces) {
+      const double distance = dot(Vec3{scene.x[i], scene.y[i], scene.z[i]} - face.corners[0], face.normal);
+      largest = std::max(largest, scene.radius[i] - distance);
+      const auto at = static_cast<std::size_t>(scene.surface[i]);
+      if (distance < 0 && problems.size() < enough)
+        problems.push_back(
+            fmt::format("lines: particle {} at ({}, {}, {}) stands {} m behind wall {} (no line inside the "
+                        "walls meets it) try "
+                        "another region",
+                        scene.surface[i], e.centre_m[at].x, e.centre_m[at].y, e.centre_m[at].z, -distance,
+                        e.walls[static_cast<std::size_t>(face.surface) - scene.x.size()].name));
+    }
+  return largest;
+}
+
+double line_spacing(const Enclosure& e, double lines_per_disc, double diameter) {
+  double spacing = 1;
+  if (e.sphere_count() > 0) {
+    std::vector<double> sorted = e.radius_m;
+    const auto tenth = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 10);
+    std::nth_element(sorted.begin(), tenth, sorted.end());
+    spacing = *tenth * std::sqrt(pi / lines_per_disc);
+  } else if (!e.walls.empty()) {
+    double sum = 0;
+    for (const Wall& wall : e.walls) sum += area(wall);
+    spacing = std::sqrt(sum / static_cast<double>(e.walls.size()) / lines_on_a_face);
+  }
+  return std::max(spacing, diameter / std::sqrt(max_cells));
+}
+
+}  // namespace
+
+LineSpheres LineScene::spheres() const {
+  const float largest = reach.empty() ? 0 : *std::max_element(reach.begin(), reach.end());
+  return {static_cast<std::int32_t>(x.size()),
+          x.data(),
+          y.data(),
+          z.data(),
+          reach.data(),
+          surface.data(),
+          largest};
+}
+
+LineScene::LineScene(const Enclosure& enclosure, double lines_per_disc)
+    : open_surface(static_cast<std::int32_t>(enclosure.open_surface())) {
+  auto problems = shape_problems(enclosure);
+  if (!problems.empty()) throw InputError(problems);
+
+  Bounds all;
+  for (const Wall& wall : enclosure.walls)
+    for (const Vec3& p : wall.vertices) all.include(p);
+  for (std::size_t i = 0; i < enclosure.sphere_count(); ++i)
+    all.include(enclosure.centre_m[i], enclosure.radius_m[i]);
+  const bool periodic = enclosure.periodic != std::array<bool, 3>{};
+  if (periodic) {
+    all.include(enclosure.box.min), all.include(enclosure.box.max);
+    for (int k = 0; k < 3; ++k) period[k] = enclosure.periodic[k] ? enclosure.box.size()[k] : 0;
+  }
+  middle = all.middle();
+  surface = order_in_space(enclosure.centre_m, all);
+  for (const std::int32_t s : surface) {
+    Vec3 c = enclosure.centre_m[static_cast<std::size_t>(s)];
+    for (int k = 0; k < 3; ++k)
+      if (period[k] > 0) c[k] -= period[k] * std::floor((c[k] - enclosure.box.min[k]) / period[k]);
+    c -= middle;
+    x.push_back(c.x), y.push_back(c.y), z.push_back(c.z);
+    radius.push_back(enclosure.radius_m[static_cast<std::size_t>(s)]);
+  }
+
+  const double tolerance = corner_tolerance * all.diameter();
+  faces = faces_about(enclosure, middle, tolerance);
+  closed = !periodic && edges_close(faces);
+  if (periodic && !(edges_close_periodically(faces, period, 10 * tolerance) && holds_volume(enclosure)))
+    throw InputError(
+        "lines: the walls do not close the directions that are not periodic (or do not run through "
+        "those that are) try embree");
+  if (enclosure.periodic == std::array<bool, 3>{true, true, true} && radius.empty())
+    throw InputError("lines: an empty box, periodic all round (lines would meet nothing) add particles");
+  problems = convexity_problems(enclosure, faces, tolerance);
+  const bool walls_hold_all = protrusion(*this, enclosure, problems) <= 0 && closed;
+  if (!problems.empty()) throw InputError(problems);
+
+  if (walls_hold_all)
+    for (const Face& face : faces) hull.insert(hull.end(), face.corners.begin(), face.corners.end());
+  else
+    for (const Vec3& p : all.corners()) hull.push_back(p - middle);
+  spacing = line_spacing(enclosure, lines_per_disc, all.diameter());
+  for (double r : radius) reach.push_back(static_cast<float>(r / spacing));
+  if (periodic) add_periods(enclosure);
+}
+
+double LineScene::room_for_images() const {
+  return is_periodic() ? 2.0 * spheres().max_reach + 2 : 0;
+}
+
+/// An upstream way of five mean chords leaves so few line ends to the tracer that they cost no more than the
+/// images do.
+void LineScene::add_periods(const Enclosure& enclosure) {
+  constexpr double chords = 5, most_periods = 20;
+  double volume = enclosure.box.volume(), area = 0, shortest = 1e300;
+  for (const double r : radius) volume -= 4.0 / 3 * pi * r * r * r;
+  for (const double a : surface_areas(enclosure)) area += a;
+  for (int k = 0; k < 3; ++k)
+    if (period[k] > 0) shortest = std::min(shortest, period[k]);
+  upstream_m = std::min(chords * 4 * std::max(volume, 0.0) / area, most_periods * shortest);
+  tracer = std::make_shared<EmbreeTracer>(enclosure, 1);
+
+  int images[3] = {};
+  for (int k = 0; k < 3; ++k)
+    if (period[k] > 0) images[k] = static_cast<int>(std::ceil(upstream_m / period[k])) + 1;
+  const std::size_t own = faces.size();
+  for (int a = -images[0]; a <= images[0]; ++a)
+    for (int b = -images[1]; b <= images[1]; ++b)
+      for (int c = -images[2]; c <= images[2]; ++c)
+        for (std::size_t f = 0; f < own && (a || b || c); ++f) {
+          Face face = faces[f];
+          for (Vec3& p : face.corners) p += Vec3{a * period.x, b * period.y, c * period.z};
+          face.image = true;
+          faces.push_back(std::move(face));
+        }
+}
+
+}  // namespace granrad

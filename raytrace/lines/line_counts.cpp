@@ -1,0 +1,239 @@
+#include "raytrace/lines/line_counts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "dem/base/random.h"
+
+namespace granrad {
+
+namespace {
+
+constexpr double events_per_block = 32768;  // 128 KiB: sorted in the second-level cache
+
+constexpr int largest_unit = 1 << 30;
+
+/// A number in [0, 1) that belongs to a pair and a round of thinning.
+double lot(std::uint64_t seed, std::size_t i, std::int32_t j, std::uint32_t round) {
+  return random_uniform2(seed, 0x7468696e00000000u + round,
+                         static_cast<std::uint64_t>(i) << 32 | static_cast<std::uint32_t>(j))[0];
+}
+
+}  // namespace
+
+PairCounts::PairCounts(std::vector<char> kind, std::size_t max_pairs, double events, int threads)
+    : packing_(kind.size(), events, events_per_block),
+      kind_(std::move(kind)),
+      blocks_(packing_.blocks()),
+      max_pairs_(max_pairs) {
+  for (int t = 0; t < threads; ++t) events_.emplace_back(packing_);
+}
+
+bool PairCounts::sampled(std::size_t row) const {
+  constexpr std::size_t few_surfaces = 2000;
+  return kind_.size() < few_surfaces || kind_[row] == 1 || (row * 0x9e3779b97f4a7c15u) >> 60 == 0;
+}
+
+void PairCounts::count_events(std::size_t b, Scratch& scratch) {
+  auto& [events, room, found, merged] = scratch;
+  events.clear();
+  for (const PairEvents& of_thread : events_) of_thread.collect(b, events);
+  if (events.empty()) return;
+  sort_events(events, room, packing_.row_bits + packing_.column_bits);
+
+  constexpr Pair end{~0u, 0};  // after all keys
+  found.resize(events.size() + 1);
+  std::size_t n = 0;
+  Pair sum{events[0] >> line_run_bits, 0};
+  for (const std::uint32_t event : events) {
+    found[n] = sum;
+    const std::uint32_t key = event >> line_run_bits, before = key == sum.key ? sum.count : 0;
+    n += key != sum.key;
+    sum = {key, before + line_run_count(event)};
+  }
+  found[n++] = sum;
+  found[n] = end;
+
+  auto& pairs = blocks_[b].pairs;
+  pairs.push_back(end);
+  merged.resize(pairs.size() + n);
+  const Pair *p = pairs.data(), *q = found.data();
+  Pair* to = merged.data();
+  while ((p->key & q->key) != end.key) {
+    const std::uint32_t key = std::min(p->key, q->key);
+    const bool old = p->key == key, now = q->key == key;
+    *to++ = {key, (old ? p->count : 0) + (now ? q->count : 0)};
+    p += old, q += now;
+  }
+  const auto size = static_cast<std::size_t>(to - merged.data());
+  if (pairs.capacity() < size + 1) pairs = {}, pairs.reserve(size + size / 4 + 1);
+  pairs.assign(merged.data(), to);
+}
+
+void PairCounts::merge(std::uint64_t seed) {
+  Scratch scratch;
+#pragma omp single
+  pairs_ = 0;
+  std::size_t mine = 0;
+#pragma omp for schedule(dynamic) nowait
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    count_events(b, scratch);
+    mine += blocks_[b].pairs.size();
+  }
+#pragma omp atomic
+  pairs_ += mine;
+#pragma omp barrier
+#pragma omp for schedule(static)
+  for (std::size_t t = 0; t < events_.size(); ++t) events_[t].clear();
+  for (bool first = true;; first = false) {
+    const bool too_many = pairs_ > max_pairs_ && unit_ < largest_unit;
+#pragma omp barrier
+    if (!too_many) return;
+#pragma omp single
+    {
+      if (!first || unit_ == 1) unit_ *= 2;
+      ++thinning_round_;
+      pairs_ = 0;
+    }
+    mine = 0;
+#pragma omp for schedule(dynamic) nowait
+    for (std::size_t b = 0; b < blocks_.size(); ++b) mine += thin(b, seed);
+#pragma omp atomic
+    pairs_ += mine;
+#pragma omp barrier
+  }
+}
+
+std::size_t PairCounts::thin(std::size_t b, std::uint64_t seed) {
+  const auto goes = [&](Pair& pair) {
+    if (pair.count >= static_cast<std::uint32_t>(unit_)) return false;
+    const double n = std::exchange(pair.count, unit_);
+    return lot(seed, packing_.row(b, pair.key), packing_.column(pair.key), thinning_round_) * unit_ >= n;
+  };
+  auto& pairs = blocks_[b].pairs;
+  std::size_t kept = 0;
+  for (Pair pair : pairs)
+    if (!goes(pair)) pairs[kept++] = pair;
+  pairs.resize(kept);
+  return kept;
+}
+
+/// Welford's update with the counts of this replicate. A pair met for the first time had none before.
+void PairCounts::sample(std::size_t b) {
+  const double before = replicates_;
+  std::vector<Sample> samples;
+  auto known = blocks_[b].samples.cbegin();
+  const auto known_end = blocks_[b].samples.cend();
+  std::size_t row = 0;
+  bool wanted = false;
+  for (const Pair& pair : blocks_[b].pairs) {
+    if (const std::size_t at = packing_.row(b, pair.key) + 1; at != row) row = at, wanted = sampled(row - 1);
+    if (!wanted) continue;
+    while (known != known_end && known->key < pair.key) ++known;
+    const bool met = known != known_end && known->key == pair.key;
+    const double total = met ? known->total : 0.0, spread = met ? known->spread : 0.0;
+    const double deviation = before > 0 ? pair.count - total - total / before : 0;
+    samples.push_back(
+        {pair.key, pair.count, static_cast<float>(spread + deviation * deviation * before / (before + 1))});
+  }
+  blocks_[b].samples = std::move(samples);
+}
+
+void PairCounts::end_replicate() {
+#pragma omp for schedule(dynamic)
+  for (std::size_t b = 0; b < blocks_.size(); ++b) sample(b);
+#pragma omp single
+  ++replicates_;
+}
+
+/// Pools of pairs by kind and by the binary order of their count: variance per count, from the replicates.
+struct PairCounts::VariancePools {
+  static constexpr int orders = 40;
+  double variance[3][orders] = {}, count[3][orders] = {};
+
+  static int order(double n) { return std::min(orders - 1, std::ilogb(std::max(1.0, n))); }
+  double ratio(int kind, double n) const {
+    const int k = order(n);
+    return count[kind][k] > 0 ? variance[kind][k] / count[kind][k] : 1;
+  }
+};
+
+PairCounts::VariancePools PairCounts::pooled_variances() const {
+  const double replicates = replicates_;
+  VariancePools pools;
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    for (const Sample& s : blocks_[b].samples) {
+      const int kind =
+          kind_[packing_.row(b, s.key)] + kind_[static_cast<std::size_t>(packing_.column(s.key))];
+      const int order = VariancePools::order(s.total);
+      pools.variance[kind][order] += s.spread * replicates / (replicates - 1);
+      pools.count[kind][order] += s.total;
+    }
+  return pools;
+}
+
+/// Both halves of the symmetric matrix, columns ascending.
+struct PairCounts::Expanded {
+  struct Cell {
+    std::int32_t column;
+    std::uint32_t count;
+  };
+  std::vector<std::int64_t> row_begin;
+  std::vector<Cell> cell;
+};
+
+/// Rows are visited in order, so that row j collects its smaller columns in order too; pairs are given up on
+/// the way.
+PairCounts::Expanded PairCounts::expand() {
+  const std::size_t n = kind_.size();
+  Expanded all{std::vector<std::int64_t>(n + 1, 0), {}};
+  std::vector<std::int64_t> below(n, 0);
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    for (const Pair& pair : blocks_[b].pairs) {
+      const auto i = packing_.row(b, pair.key), j = static_cast<std::size_t>(packing_.column(pair.key));
+      ++all.row_begin[i + 1];
+      if (i != j) ++below[j];
+    }
+  for (std::size_t i = 0; i < n; ++i) all.row_begin[i + 1] += all.row_begin[i] + below[i];
+  all.cell.resize(static_cast<std::size_t>(all.row_begin[n]));
+  std::vector<std::int64_t> above(n);
+  for (std::size_t i = 0; i < n; ++i) above[i] = all.row_begin[i] + std::exchange(below[i], all.row_begin[i]);
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    for (const Pair& pair : blocks_[b].pairs) {
+      const std::size_t i = packing_.row(b, pair.key);
+      const std::int32_t j = packing_.column(pair.key);
+      if (static_cast<std::size_t>(j) == i) {  // its own image, from both ends
+        all.cell[static_cast<std::size_t>(above[i]++)] = {j, 2 * pair.count};
+        continue;
+      }
+      all.cell[static_cast<std::size_t>(above[i]++)] = {j, pair.count};
+      all.cell[static_cast<std::size_t>(below[static_cast<std::size_t>(j)]++)] = {
+          static_cast<std::int32_t>(i), pair.count};
+    }
+    blocks_[b] = {};
+  }
+  return all;
+}
+
+SymmetricCounts PairCounts::finish() {
+  events_.clear();
+  const VariancePools pools = pooled_variances();
+  Expanded all = expand();
+  SymmetricCounts sum;
+  sum.thinning_unit = unit_;
+  sum.pattern.row_begin = std::move(all.row_begin);
+  sum.pattern.column.reserve(all.cell.size());
+  sum.count.reserve(all.cell.size());
+  sum.variance.reserve(all.cell.size());
+  for (std::size_t i = 0; i < kind_.size(); ++i)
+    for (auto k = sum.pattern.row_begin[i]; k < sum.pattern.row_begin[i + 1]; ++k) {
+      const auto [column, count] = all.cell[static_cast<std::size_t>(k)];
+      sum.pattern.column.push_back(column);
+      sum.count.push_back(count);
+      sum.variance.push_back(count * pools.ratio(kind_[i] + kind_[static_cast<std::size_t>(column)], count));
+    }
+  return sum;
+}
+
+}  // namespace granrad

@@ -1,0 +1,62 @@
+#include "raytrace/lines/line_plan.h"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dem/base/error.h"
+
+namespace granrad {
+
+namespace {
+
+constexpr double most_directions = 1 << 24;
+
+/// The power of the number of directions with which the error falls.
+double falling_power(const std::vector<LineRound>& rounds) {
+  if (rounds.size() < 2) return 1;
+  const LineRound &before = rounds[rounds.size() - 2], &last = rounds.back();
+  const double power = std::log(before.error / last.error) /
+                       std::log(static_cast<double>(last.directions) / before.directions);
+  return std::clamp(power, 0.5, 1.0);
+}
+
+}  // namespace
+
+void check_line_options(const LineOptions& options) {
+  std::vector<std::string> problems;
+  if (options.directions < 1)
+    problems.push_back(fmt::format("lines: directions = {} (must be at least 1)", options.directions));
+  if (options.replicates < 2)
+    problems.push_back(
+        fmt::format("lines: replicates = {} (errors come from at least 2)", options.replicates));
+  if (!(options.lines_per_disc > 0) || !std::isfinite(options.lines_per_disc))
+    problems.push_back(fmt::format("lines: lines_per_disc = {} (must be positive)", options.lines_per_disc));
+  if (!(options.target_error >= 0))
+    problems.push_back(fmt::format("lines: target_error = {} (must not be negative)", options.target_error));
+  if (!problems.empty()) throw InputError(problems);
+}
+
+int line_threads(int asked) {
+  return asked > 0 ? asked : omp_get_max_threads();
+}
+
+int more_directions(const std::vector<LineRound>& rounds, const LineOptions& options) {
+  const auto [directions, error] = rounds.back();
+  const double ratio = error / options.target_error, power = falling_power(rounds);
+  const double foreseen = directions * std::pow(ratio, 1 / power);
+  if (foreseen > most_directions) {
+    const double rays_each = 2 * options.lines_per_disc * options.replicates;
+    throw ThresholdMissed(fmt::format(
+        "error = {:.3g} (reached {:.3g} with {:.2g} rays per particle; would need about {:.2g}; the most are "
+        "{:.2g}, for about {:.2g}) ask for less",
+        options.target_error, error, directions * rays_each, foreseen * rays_each,
+        most_directions * rays_each, error * std::pow(directions / most_directions, power)));
+  }
+  return static_cast<int>(
+      std::min(most_directions, std::ceil(directions * std::clamp(1.1 * ratio * ratio, 1.3, 4.0))));
+}
+
+}  // namespace granrad

@@ -1,0 +1,27 @@
+#pragma once
+#include <vector>
+
+#include "raytrace/lines/line_sweep.h"
+
+namespace granrad {
+
+/// Throws InputError with every option that makes no sense.
+void check_line_options(const LineOptions& options);
+
+/// Number of threads to use: `asked`, or OpenMP's default for 0.
+int line_threads(int asked);
+
+/// An attempt and the error it found.
+struct LineRound {
+  int directions;
+  double error;
+};
+
+/// Directions for the next attempt when options.target_error was missed: enough if the error fell as slowly
+/// as that of random directions, at most four times as many. Throws ThresholdMissed as soon as the target is
+/// foreseen to take more than 2^24 of them, and says what they would reach: the error is taken to fall as it
+/// did in the last two rounds, but no slower than for random directions (power 1/2) and no faster than for
+/// evenly spread ones (power 1), which is assumed after the first round.
+int more_directions(const std::vector<LineRound>& rounds, const LineOptions& options);
+
+}  // namespace granrad

@@ -1,0 +1,90 @@
+#include "raytrace/paths/path_starts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dem/base/constants.h"
+#include "dem/base/random.h"
+
+namespace granrad {
+
+PathSurfaces::PathSurfaces(const Enclosure& enclosure, const RadiativeState& state)
+    : first_wall_(static_cast<std::int32_t>(enclosure.sphere_count())) {
+  for (std::size_t s = 0; s < state.role.size(); ++s) {
+    const WallRole role = state.role[s];
+    const bool black = role == WallRole::open || s == enclosure.open_surface();
+    absorptivity_.push_back(role == WallRole::adiabatic ? 0 : black ? 1 : state.emissivity[s]);
+    power_W_m2_.push_back(emissive_power(state.temperature_K[s]));
+    drops_.push_back(role == WallRole::excluded);
+  }
+}
+
+double PathSurfaces::smallest_absorptivity() const {
+  double smallest = 1;
+  for (std::int32_t s = 0; s < count(); ++s)
+    if (radiates(s)) smallest = std::min(smallest, absorptivity_[s]);
+  return smallest;
+}
+
+double PathSurfaces::power_range_W_m2() const {
+  double low = INFINITY, high = -INFINITY;
+  for (std::int32_t s = 0; s < count(); ++s)
+    if (radiates(s)) low = std::min(low, power_W_m2_[s]), high = std::max(high, power_W_m2_[s]);
+  return high > low ? high - low : 0;
+}
+
+PathStarts::PathStarts(const Enclosure& enclosure, const PathSurfaces& surfaces, std::int64_t walks,
+                       double wall_share)
+    : walks_per_m2_(enclosure.surface_count(), 0.0) {
+  const auto area = surface_areas(enclosure);
+  const auto emitters = static_cast<std::int32_t>(enclosure.open_surface());
+  double total_m2[2] = {0, 0};  // of particles, of walls
+  for (std::int32_t s = 0; s < emitters; ++s)
+    if (surfaces.radiates(s)) total_m2[surfaces.is_wall(s)] += surfaces.absorptivity(s) * area[s];
+  emission_area_m2_ = total_m2[0] + total_m2[1];
+  const double on_walls = total_m2[0] == 0 ? 1 : total_m2[1] == 0 ? 0 : wall_share;
+  const double share_per_m2[2] = {total_m2[0] > 0 ? (1 - on_walls) / total_m2[0] : 0,
+                                  total_m2[1] > 0 ? on_walls / total_m2[1] : 0};
+  double sum = 0;
+  for (std::int32_t s = 0; s < emitters; ++s) {
+    if (surfaces.radiates(s)) {
+      const double share = share_per_m2[surfaces.is_wall(s)];
+      walks_per_m2_[s] = share * static_cast<double>(walks);
+      sum += share * surfaces.absorptivity(s) * area[s];
+    }
+    cumulative_.push_back(sum);
+  }
+}
+
+std::int32_t PathStarts::surface_at(double u) const {
+  const double all = cumulative_.back(), target = std::min(u * all, std::nextafter(all, 0.0));
+  const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), target);
+  return static_cast<std::int32_t>(found - cumulative_.begin());
+}
+
+StartLattice::StartLattice(std::uint64_t seed, std::uint64_t update, int batch, std::int64_t count)
+    : count_(count) {
+  const std::uint64_t shifts = 1ull << 63;  // counters no walk reaches
+  for (unsigned d = 0; d < 6; d += 2) {
+    const auto u = random_uniform2(seed, update, shifts + 8 * static_cast<std::uint64_t>(batch) + d);
+    shift_[d] = u[0];
+    shift_[d + 1] = u[1];
+  }
+}
+
+double StartLattice::position(std::int64_t k) const {
+  return (static_cast<double>(k) + shift_[4]) / static_cast<double>(count_);
+}
+
+std::array<double, 4> StartLattice::uniforms(std::int64_t k) const {
+  static constexpr double step[4] = {0.8566748838545029, 0.733891856627126, 0.6287067210378086,
+                                     0.53859725722361};
+  std::array<double, 4> u;
+  for (int d = 0; d < 4; ++d) {
+    const double x = shift_[d] + static_cast<double>(k) * step[d];
+    u[d] = x - std::floor(x);
+  }
+  return u;
+}
+
+}  // namespace granrad

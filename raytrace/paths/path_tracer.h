@@ -1,0 +1,44 @@
+#pragma once
+#include <cstdint>
+
+#include "raytrace/embree/embree_tracer.h"
+#include "raytrace/enclosure.h"
+#include "raytrace/exchange_source.h"
+
+namespace granrad {
+
+struct PathOptions {
+  std::int64_t walks = 10000;  ///< per update, >= 2 path_batches
+  std::uint64_t seed = 1;
+  /// Share of the walks that start on isothermal and open walls, the rest on particles. At 0 or 1 the
+  /// exchange within the kind that starts none is left out. 0.75: a sixth of the cost of even starts for the
+  /// wall heat of a dense bed.
+  double wall_share = 0.75;
+  double weighted_below = 0.7;  ///< smallest emissivity below which walks are weighted instead of absorbed
+  int threads = 0;              ///< 0: OpenMP's default; results do not depend on it
+};
+
+/// Independent randomisations of one update; their scatter is the standard error.
+inline constexpr int path_batches = 16;
+
+/// Net heats of grey diffuse surfaces by following bundles of energy; exact for every emissivity: no
+/// radiosity is assumed uniform over a surface.
+///
+/// A walk starts on surface i, diffusely, from a point uniform in area. Where it meets surface j it is
+/// absorbed with probability eps_j, or (weighted) leaves the part eps_j of its weight and goes on with the
+/// rest until Russian roulette ends it. What j absorbs gives both ends g (E_i - E_j) with opposite signs, E =
+/// sigma T^4. With g_i = eps_i A_i / (walks from i), walks between i and j count with g = 1/(1/g_i + 1/g_j),
+/// whichever end they started from: the best unbiased merge of both directions (reciprocity: eps_i A_i D_ij =
+/// eps_j A_j D_ji).
+///
+/// Adiabatic walls re-emit diffusely where they are hit. Open walls and the surroundings are black. A walk
+/// that meets an excluded wall ends and exchanges nothing, as if that wall had the temperature of the start.
+/// Heats are summed as integers of a power-of-two quantum: they sum to 0 exactly, an isothermal enclosure
+/// gets exactly 0, and any number of threads gives the same bits. Starts are stratified: a shifted lattice
+/// over (surface, point, direction) in each batch.
+///
+/// Throws NumericalError when more than 1e-3 of the walks leak or do not end.
+RadiativeHeat trace_paths(const Enclosure& enclosure, const EmbreeTracer& tracer, const RadiativeState& state,
+                          const PathOptions& options, std::uint64_t update);
+
+}  // namespace granrad

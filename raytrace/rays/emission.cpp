@@ -1,0 +1,108 @@
+#include "raytrace/rays/emission.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dem/base/constants.h"
+
+namespace granrad {
+
+namespace {
+
+/// The triangle a wall's sampling table speaks of: of the mesh, or of the fan around vertex 0 of a polygon.
+std::array<Vec3, 3> triangle_of(const Wall& wall, std::size_t k) {
+  if (wall.is_polygon()) return {wall.vertices[0], wall.vertices[k + 1], wall.vertices[k + 2]};
+  const auto& t = wall.triangles[k];
+  return {wall.vertices[t[0]], wall.vertices[t[1]], wall.vertices[t[2]]};
+}
+
+bool is_parallelogram(const Wall& wall) {
+  if (!wall.is_polygon() || wall.vertices.size() != 4) return false;
+  const auto& v = wall.vertices;
+  return norm(v[0] - v[1] + v[2] - v[3]) <= 1e-12 * norm(v[2] - v[0]);
+}
+
+struct Turn {
+  double cosine, sine;
+};
+
+/// cos and sin of 2 pi v, v in [0, 1], within 1e-15: series on the nearest quarter. The same bits on every
+/// machine, which those of the C library are not.
+Turn turn(double v) {
+  const double quarter = std::nearbyint(4 * v), x = (v - 0.25 * quarter) * (2 * pi), y = x * x;
+  double c = 1, s = 1;
+  for (int k = 16; k >= 2; k -= 2) {
+    c = 1 - y / (k * (k - 1)) * c;
+    s = 1 - y / (k * (k + 1)) * s;
+  }
+  s *= x;
+  switch (static_cast<int>(quarter) & 3) {
+    case 0:
+      return {c, s};
+    case 1:
+      return {-s, c};
+    case 2:
+      return {-c, -s};
+    default:
+      return {s, -c};
+  }
+}
+
+Vec3 direction_on_sphere(double u, double v) {
+  const double z = 1 - 2 * u, s = std::sqrt(std::max(0.0, 1 - z * z));
+  const Turn t = turn(v);
+  return {s * t.cosine, s * t.sine, z};
+}
+
+}  // namespace
+
+Vec3 cosine_direction(const Vec3& n, double u, double v) {
+  // Orthonormal frame without branches (Duff et al. 2017): t1, t2, n.
+  const double sign = std::copysign(1.0, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
+  const Vec3 t1{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, t2{b, sign + n.y * n.y * a, -n.y};
+  const double s = std::sqrt(u), c = std::sqrt(1 - u);
+  const Turn t = turn(v);
+  return t1 * (s * t.cosine) + t2 * (s * t.sine) + n * c;
+}
+
+Emitter::Emitter(const Enclosure& enclosure) : enclosure_(enclosure) {
+  for (const Wall& wall : enclosure.walls) {
+    const std::size_t triangles = wall.is_polygon() ? wall.vertices.size() - 2 : wall.triangles.size();
+    std::vector<double> cumulative;
+    double sum = 0;
+    if (!is_parallelogram(wall)) {
+      for (std::size_t k = 0; k < triangles; ++k) {
+        const auto [a, b, c] = triangle_of(wall, k);
+        cumulative.push_back(sum += 0.5 * norm(cross(b - a, c - a)));
+      }
+    }
+    cumulative_area_.push_back(std::move(cumulative));
+  }
+}
+
+Emission Emitter::emit(std::int32_t surface, double u0, double u1, double u2, double u3) const {
+  const auto spheres = static_cast<std::int32_t>(enclosure_.sphere_count());
+  if (surface < spheres) {
+    const Vec3 normal = direction_on_sphere(u0, u1);
+    return {enclosure_.centre_m[surface] + enclosure_.radius_m[surface] * normal,
+            cosine_direction(normal, u2, u3)};
+  }
+  const Wall& wall = enclosure_.walls[surface - spheres];
+  const auto& cumulative = cumulative_area_[surface - spheres];
+  if (cumulative.empty()) {  // a parallelogram: both uniforms stay stratified over its sides
+    const auto& v = wall.vertices;
+    return {v[0] + u0 * (v[1] - v[0]) + u1 * (v[3] - v[0]), cosine_direction(polygon_normal(wall), u2, u3)};
+  }
+  const double target = u0 * cumulative.back();
+  const std::size_t k = std::min<std::size_t>(
+      std::upper_bound(cumulative.begin(), cumulative.end(), target) - cumulative.begin(),
+      cumulative.size() - 1);
+  const double before = k == 0 ? 0 : cumulative[k - 1];
+  const double within = std::clamp((target - before) / (cumulative[k] - before), 0.0, 1.0);
+  const auto [a, b, c] = triangle_of(wall, k);
+  const double root = std::sqrt(within);
+  const Vec3 origin = a * (1 - root) + b * (root * (1 - u1)) + c * (root * u1);
+  return {origin, cosine_direction(normalized(cross(b - a, c - a)), u2, u3)};
+}
+
+}  // namespace granrad

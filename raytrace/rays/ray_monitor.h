@@ -1,0 +1,38 @@
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <functional>
+
+#include "dem/base/error.h"
+
+namespace granrad {
+
+/// Told now and then, from the thread that started the trace, which part of the present round is done (0 ..
+/// 1); answers whether to go on. When not, the trace ends with TraceStopped.
+using TraceWatch = std::function<bool(double part)>;
+
+/// A trace was stopped by its watch; nothing of it is kept.
+class TraceStopped : public NumericalError {
+ public:
+  TraceStopped() : NumericalError("tracing stopped before its end: nothing was kept") {}
+};
+
+/// Counts the work that several threads have done and asks the watch whether to go on.
+class RayMonitor {
+ public:
+  RayMonitor(TraceWatch watch, double total) : watch_(std::move(watch)), total_(total) {}
+
+  /// To be called by any thread with the work it begins; false: stop.
+  bool go_on(std::int64_t work);
+  void throw_if_stopped() const {
+    if (stopped_) throw TraceStopped();
+  }
+
+ private:
+  TraceWatch watch_;
+  double total_;
+  std::atomic<std::int64_t> done_{0};
+  std::atomic<bool> stopped_{false};
+};
+
+}  // namespace granrad

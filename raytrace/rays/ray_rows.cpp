@@ -1,0 +1,399 @@
+#include "raytrace/rays/ray_rows.h"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include "dem/base/error.h"
+#include "dem/base/random.h"
+#include "raytrace/rays/hit_tally.h"
+#include "raytrace/rays/ray_monitor.h"
+#include "raytrace/rays/variance_table.h"
+#include "raytrace/stated_error.h"
+
+namespace granrad {
+
+namespace {
+
+/// What one surface's rays found.
+struct Row {
+  std::vector<HitEntry> entries;
+  std::int64_t launched = 0, leaked = 0, chords = 0;
+  double chord_sum_m = 0, chord_square_sum_m2 = 0;
+  HitEntry stated;  ///< the walls whose error is stated, as if they were one
+
+  void add_chords(const Row& more) {
+    leaked += more.leaked;
+    chords += more.chords;
+    chord_sum_m += more.chord_sum_m;
+    chord_square_sum_m2 += more.chord_square_sum_m2;
+  }
+};
+
+/// Enough independent scrambles that the variance found from them, pooled over the enclosure, is known to
+/// about 10 %; two are enough for a bed, and leave the low-discrepancy sets as large as they can be.
+int replicate_count(Sampling sampling, std::size_t surfaces) {
+  if (sampling == Sampling::plain) return 1;
+  return static_cast<int>(std::clamp<std::size_t>(256 / surfaces, 2, 32));
+}
+
+/// The bits of three coordinates in [0, 1] taken in turns.
+std::uint64_t morton_key(const Vec3& p) {
+  std::uint64_t key = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto cell = static_cast<std::uint64_t>(p[axis] * 1023.0);
+    for (int bit = 0; bit < 10; ++bit) key |= (cell >> bit & 1u) << (3 * bit + axis);
+  }
+  return key;
+}
+
+class RowTracer {
+ public:
+  RowTracer(const Enclosure& enclosure, const std::vector<std::int64_t>& rays, const TraceOptions& options,
+            const std::function<RayEnd(const EmittedRay&)>& follow)
+      : emitter_(enclosure),
+        rays_(rays),
+        options_(options),
+        follow_(follow),
+        stated_(stated_quantity(enclosure, options.hot_walls).counted),
+        replicates_(replicate_count(options.sampling, enclosure.surface_count())),
+        threads_(options.threads > 0 ? options.threads : omp_get_max_threads()),
+        monitor_(options.watch, std::accumulate(rays.begin(), rays.end(), 0.0)),
+        tallies_(static_cast<std::size_t>(threads_), HitTally(enclosure.surface_count())),
+        centre_m_(enclosure.centre_m) {
+    Vec3 high;
+    for (std::size_t i = 0; i < centre_m_.size(); ++i)
+      for (int axis = 0; axis < 3; ++axis) {
+        low_m_[axis] = i == 0 ? centre_m_[i][axis] : std::min(low_m_[axis], centre_m_[i][axis]);
+        high[axis] = i == 0 ? centre_m_[i][axis] : std::max(high[axis], centre_m_[i][axis]);
+      }
+    size_m_ = std::max({high.x - low_m_.x, high.y - low_m_.y, high.z - low_m_.z, 1e-300});
+  }
+
+  int replicates() const { return replicates_; }
+  const std::vector<char>& stated() const { return stated_; }
+
+  /// Throws TraceStopped.
+  std::vector<Row> trace(const std::vector<std::int32_t>& surfaces) {
+    std::vector<Row> rows(surfaces.size());
+    const std::vector<std::size_t> order = neighbours_together(surfaces);
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
+    for (std::size_t n = 0; n < order.size(); ++n) {
+      const std::size_t k = order[n];
+      if (per_replicate(surfaces[k]) <= part_rays) rows[k] = trace_surface(surfaces[k], own_tally());
+    }
+    for (std::size_t k = 0; k < surfaces.size(); ++k)
+      if (per_replicate(surfaces[k]) > part_rays) rows[k] = trace_in_parts(surfaces[k]);
+    monitor_.throw_if_stopped();
+    return rows;
+  }
+
+ private:
+  /// A surface with more rays than this in a replicate is shared out to threads in parts.
+  static constexpr std::int64_t part_rays = 1 << 16;
+
+  /// Places in `surfaces`, spheres along a curve through their bounding box (Morton): rays of neighbours meet
+  /// the same parts of the tree, which then are in the cache.
+  std::vector<std::size_t> neighbours_together(const std::vector<std::int32_t>& surfaces) const {
+    std::vector<std::pair<std::uint64_t, std::size_t>> keys;
+    for (std::size_t k = 0; k < surfaces.size(); ++k) {
+      const auto s = static_cast<std::size_t>(surfaces[k]);
+      keys.emplace_back(s < centre_m_.size() ? morton_key((centre_m_[s] - low_m_) * (1 / size_m_)) : 0, k);
+    }
+    std::sort(keys.begin(), keys.end());
+    std::vector<std::size_t> order;
+    for (const auto& key : keys) order.push_back(key.second);
+    return order;
+  }
+
+  std::int64_t per_replicate(std::int32_t surface) const {
+    return (rays_[static_cast<std::size_t>(surface)] + replicates_ - 1) / replicates_;
+  }
+  HitTally& own_tally() {
+    return tallies_[static_cast<std::size_t>(omp_get_thread_num())];
+  }
+
+  Row trace_surface(std::int32_t surface, HitTally& tally) {
+    Row row;
+    const std::int64_t rays = per_replicate(surface);
+    for (std::int32_t replicate = 0; replicate < replicates_; ++replicate) {
+      row.add_chords(trace_rays(surface, replicate, 0, rays, tally));
+      end_replicate(row, tally);
+    }
+    row.entries = tally.take();
+    row.launched = rays * replicates_;
+    return row;
+  }
+
+  /// The same, a part of a replicate at a time.
+  Row trace_in_parts(std::int32_t surface) {
+    const std::int64_t rays = per_replicate(surface), parts = (rays + part_rays - 1) / part_rays;
+    std::vector<Row> found(static_cast<std::size_t>(parts * replicates_));
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      const auto part = static_cast<std::int64_t>(k) % parts;
+      const auto replicate = static_cast<std::int32_t>(static_cast<std::int64_t>(k) / parts);
+      found[k] = trace_rays(surface, replicate, part * part_rays, std::min(rays, (part + 1) * part_rays),
+                            own_tally());
+      own_tally().end_replicate();
+      found[k].entries = own_tally().take();
+    }
+    Row row;
+    HitTally& tally = tallies_[0];
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      row.add_chords(found[k]);
+      for (const HitEntry& e : found[k].entries) tally.add(e.surface, static_cast<std::int32_t>(e.hits));
+      if ((k + 1) % static_cast<std::size_t>(parts) == 0) end_replicate(row, tally);
+    }
+    row.entries = tally.take();
+    row.launched = rays * replicates_;
+    return row;
+  }
+
+  void end_replicate(Row& row, HitTally& tally) const {
+    const std::int64_t hits = tally.hits_on(stated_);
+    row.stated.hits += hits;
+    row.stated.replicate_square_sum += static_cast<double>(hits) * static_cast<double>(hits);
+    tally.end_replicate();
+  }
+
+  /// Counts rays [begin, end) of a replicate into `tally`; of the row, fills what is said of chords.
+  Row trace_rays(std::int32_t surface, std::int32_t replicate, std::int64_t begin, std::int64_t end,
+                 HitTally& tally) {
+    constexpr std::int64_t between_looks = 4096;
+    Row row;
+    const RaySampler sampler(options_.sampling, options_.seed, surface, replicate);
+    for (std::int64_t from = begin; from < end; from += between_looks) {
+      const std::int64_t to = std::min(end, from + between_looks);
+      if (!monitor_.go_on(to - from)) return row;
+      for (std::int64_t ray = from; ray < to; ++ray) {
+        const auto u = sampler(static_cast<std::uint64_t>(ray));
+        const RayEnd met = follow_({surface, replicate, static_cast<std::uint64_t>(ray),
+                                    emitter_.emit(surface, u[0], u[1], u[2], u[3])});
+        if (met.surface < 0) {
+          ++row.leaked;
+          continue;
+        }
+        tally.add(met.surface);
+        if (!std::isfinite(met.chord_m)) continue;
+        ++row.chords;
+        row.chord_sum_m += met.chord_m;
+        row.chord_square_sum_m2 += met.chord_m * met.chord_m;
+      }
+    }
+    return row;
+  }
+
+  Emitter emitter_;
+  const std::vector<std::int64_t>& rays_;
+  const TraceOptions& options_;
+  const std::function<RayEnd(const EmittedRay&)>& follow_;
+  std::vector<char> stated_;
+  int replicates_, threads_;
+  RayMonitor monitor_;
+  std::vector<HitTally> tallies_;
+  const std::vector<Vec3>& centre_m_;
+  Vec3 low_m_;
+  double size_m_ = 0;
+};
+
+/// Drops rare pairs at random so that the rest stands for them.
+class Thinning {
+ public:
+  Thinning(std::uint64_t seed, std::int64_t unit) : seed_(seed ^ 0x7468696eull), unit_(unit) {}
+  std::int64_t unit() const { return unit_; }
+
+  std::int64_t kept(std::int32_t i, std::int32_t j, std::int64_t hits) const {
+    if (hits >= unit_) return hits;
+    const auto [low, high] = std::minmax(i, j);
+    const double draw =
+        random_uniform2(seed_, static_cast<std::uint64_t>(low), static_cast<std::uint64_t>(high))[0];
+    return draw * static_cast<double>(unit_) < static_cast<double>(hits) ? unit_ : 0;
+  }
+
+ private:
+  std::uint64_t seed_;
+  std::int64_t unit_;
+};
+
+constexpr double bytes_per_pair = 100;     // counts, one-way estimates, and twice as many closed values
+constexpr double bytes_per_surface = 600;  // tree, tallies, rows
+
+/// Whether the pairs could fill the memory if every ray met another surface. Throws InputError when even a
+/// few for each surface would.
+bool may_outgrow(const std::vector<std::int64_t>& rays, std::size_t limit_bytes) {
+  constexpr double fewest_pairs = 16;
+  const double surfaces = static_cast<double>(rays.size()), limit = static_cast<double>(limit_bytes);
+  const double least = surfaces * (bytes_per_surface + fewest_pairs * bytes_per_pair);
+  if (limit < least)
+    throw InputError(fmt::format("memory = {:.3g} MiB ({} surfaces need at least {:.3g} MiB) allow more",
+                                 limit * 0x1p-20, rays.size(), least * 0x1p-20));
+  double pairs = 0;
+  for (const std::int64_t n : rays) pairs += std::min(static_cast<double>(n), surfaces);
+  return bytes_per_surface * surfaces + bytes_per_pair * pairs > limit;
+}
+
+/// Smallest power of two that keeps the pairs of all surfaces, judged by a sample of rows, within memory.
+std::int64_t thinning_unit(const std::vector<Row>& sample, std::size_t surfaces, std::size_t limit_bytes) {
+  const double bytes = static_cast<double>(limit_bytes) - bytes_per_surface * static_cast<double>(surfaces);
+  const double pairs_per_row = std::max(1.0, bytes / bytes_per_pair / static_cast<double>(surfaces));
+  for (std::int64_t unit = 1;; unit *= 2) {
+    double kept = 0;
+    for (const Row& row : sample)
+      for (const HitEntry& e : row.entries)
+        kept += std::min(1.0, static_cast<double>(e.hits) / static_cast<double>(unit));
+    if (kept <= pairs_per_row * static_cast<double>(sample.size()) || unit > std::int64_t{1} << 40)
+      return unit;
+  }
+}
+
+/// The variance of the particles' sums over the stated walls relative to binomial, from replicates; each
+/// counts as it does in the error of the merged sums.
+class SumVariance {
+ public:
+  void add(const HitEntry& stated, std::int64_t launched, int replicates, double share) {
+    if (stated.hits == 0 || stated.hits == launched) return;
+    const double k = static_cast<double>(stated.hits), n = static_cast<double>(launched), r = replicates;
+    const double weight = share * share / (n * n);
+    found_ += weight * r / (r - 1) * (stated.replicate_square_sum - k * k / r);
+    binomial_ += weight * k * (1 - k / n);
+  }
+  double factor() const { return binomial_ > 0 ? found_ / binomial_ : 1; }
+
+ private:
+  double found_ = 0, binomial_ = 0;
+};
+
+/// Gathers rows in the order of the surfaces.
+class CountBuilder {
+ public:
+  CountBuilder(HitCounts& counts, Thinning thinning, int replicates, double stated_density)
+      : counts_(counts), thinning_(thinning), replicates_(replicates), stated_density_(stated_density) {
+    counts_.pattern.row_begin.assign(1, 0);
+    counts_.thinning_unit = thinning_.unit();
+  }
+
+  void append(const Row& row) {
+    const auto i = static_cast<std::int32_t>(counts_.launched.size());
+    const double area = counts_.area_m2[static_cast<std::size_t>(i)];
+    if (replicates_ > 1) {
+      const double density = area > 0 ? static_cast<double>(row.launched) / area : 0;
+      if (i < counts_.spheres && density > 0)
+        sum_.add(row.stated, row.launched, replicates_, density / (density + stated_density_));
+      for (const HitEntry& e : row.entries)
+        table_[pair_kind(counts_.spheres, i, e.surface)].add(e, row.launched, replicates_);
+    }
+    for (const HitEntry& e : row.entries) {
+      const std::int64_t hits = thinning_.kept(i, e.surface, e.hits);
+      if (hits == 0) continue;
+      counts_.pattern.column.push_back(e.surface);
+      counts_.hits.push_back(hits);
+    }
+    counts_.pattern.row_begin.push_back(static_cast<std::int64_t>(counts_.hits.size()));
+    counts_.launched.push_back(row.launched);
+    counts_.leaked += row.leaked;
+    if (row.chords == 0) return;
+    const double n = static_cast<double>(row.chords), mean = row.chord_sum_m / n;
+    area_ += area;
+    chord_ += area * mean;
+    chord_variance_ += area * area * std::max(0.0, row.chord_square_sum_m2 / n - mean * mean) / n;
+  }
+
+  void finish() {
+    if (area_ > 0) {
+      counts_.mean_chord_m = chord_ / area_;
+      counts_.mean_chord_error_m = std::sqrt(chord_variance_) / area_;
+    }
+    counts_.sum_variance_factor = sum_.factor();
+    for (std::size_t kind = 0; kind < table_.size(); ++kind) {
+      auto& factor = counts_.variance_factor[kind];
+      factor = table_[kind].factors();
+      if (thinning_.unit() == 1) continue;
+      // A pair that stands for many rare ones: its count is `unit` or nothing, the same for both directions.
+      const auto bin =
+          static_cast<std::size_t>(std::bit_width(static_cast<std::uint64_t>(thinning_.unit()))) - 1;
+      if (factor.size() < bin + 2) factor.resize(bin + 2, factor.empty() ? 1 : factor.back());
+      factor[bin] = 2 * static_cast<double>(thinning_.unit());
+    }
+  }
+
+ private:
+  HitCounts& counts_;
+  Thinning thinning_;
+  int replicates_;
+  double stated_density_;
+  std::array<VarianceTable, 4> table_;
+  SumVariance sum_;
+  double area_ = 0, chord_ = 0, chord_variance_ = 0;
+};
+
+/// Rays per area of the walls whose error is stated.
+double stated_density(const std::vector<char>& stated, const std::vector<double>& area_m2,
+                      const std::vector<std::int64_t>& rays) {
+  double n = 0, area = 0;
+  for (std::size_t w = 0; w < rays.size(); ++w)
+    if (stated[w]) n += static_cast<double>(rays[w]), area += area_m2[w];
+  return area > 0 ? n / area : 0;
+}
+
+}  // namespace
+
+std::vector<std::int64_t> rays_per_surface(const Enclosure& enclosure, const std::vector<double>& area,
+                                           double rays_per_particle) {
+  const std::size_t spheres = enclosure.sphere_count(), walls = enclosure.walls.size();
+  const std::size_t count = spheres > 0 ? spheres : walls;
+  const double total = std::accumulate(area.begin(), area.begin() + static_cast<std::ptrdiff_t>(count), 0.0);
+  std::vector<std::int64_t> rays(enclosure.surface_count(), 0);
+  for (std::size_t i = 0; i + 1 < rays.size(); ++i) {
+    if (!(area[i] > 0)) continue;
+    const double share = i < spheres || total == 0 ? 1 : area[i] * static_cast<double>(count) / total;
+    rays[i] = static_cast<std::int64_t>(std::ceil(std::max(1.0, rays_per_particle * share)));
+  }
+  return rays;
+}
+
+HitCounts trace_rows(const Enclosure& enclosure, const std::vector<double>& emitting_area_m2,
+                     const std::vector<std::int64_t>& rays, const TraceOptions& options,
+                     const std::function<RayEnd(const EmittedRay&)>& follow) {
+  constexpr std::size_t block = 8192, sample_size = 512;
+  const std::size_t surfaces = enclosure.surface_count();
+  for (std::size_t i = 0; i < surfaces; ++i)
+    if (rays[i] > most_rays_of_a_surface)
+      throw InputError(fmt::format("rays = {} of surface {} (at most {} each) ask for fewer", rays[i], i,
+                                   most_rays_of_a_surface));
+  RowTracer tracer(enclosure, rays, options, follow);
+
+  std::int64_t unit = 1;
+  if (may_outgrow(rays, options.memory_limit_bytes)) {
+    std::vector<std::int32_t> some;
+    const std::size_t count = std::min(sample_size, surfaces - 1);
+    for (std::size_t k = 0; k < count; ++k)
+      some.push_back(static_cast<std::int32_t>(k * (surfaces - 1) / count));
+    unit = thinning_unit(tracer.trace(some), surfaces, options.memory_limit_bytes);
+  }
+
+  HitCounts counts;
+  counts.area_m2 = emitting_area_m2;
+  counts.spheres = static_cast<std::int32_t>(enclosure.sphere_count());
+  CountBuilder builder(counts, Thinning(options.seed, unit), tracer.replicates(),
+                       stated_density(tracer.stated(), emitting_area_m2, rays));
+  // Walls first: they send the most rays, and threads should not wait for the last of them.
+  const std::size_t spheres = enclosure.sphere_count();
+  std::vector<std::int32_t> walls(surfaces - spheres);
+  std::iota(walls.begin(), walls.end(), static_cast<std::int32_t>(spheres));
+  const std::vector<Row> wall_rows = tracer.trace(walls);
+  for (std::size_t begin = 0; begin < spheres; begin += block) {
+    std::vector<std::int32_t> some(std::min(block, spheres - begin));
+    std::iota(some.begin(), some.end(), static_cast<std::int32_t>(begin));
+    for (const Row& row : tracer.trace(some)) builder.append(row);
+  }
+  for (const Row& row : wall_rows) builder.append(row);
+  builder.finish();
+  return counts;
+}
+
+}  // namespace granrad

@@ -1,0 +1,287 @@
+#include "raytrace/rays/view_factor_file.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "dem/base/error.h"
+#include "dem/base/hdf5_file.h"
+#include "dem/base/program.h"
+
+namespace granrad {
+
+namespace {
+
+constexpr const char* format_name = "granrad.view_factors";
+constexpr const char* periodic_name[3] = {"periodic_x", "periodic_y", "periodic_z"};
+/// In the order of pair_kind.
+constexpr std::array<const char*, 4> pair_kind_names = {"particle_particle", "particle_wall", "wall_particle",
+                                                        "wall_wall"};
+constexpr std::int32_t kind_particle = 0, kind_wall = 1, kind_open = 2;
+
+template <class T>
+void write_some(Hdf5Writer& out, const std::string& name, const std::vector<T>& values) {
+  if (!values.empty()) out.write(name, values);
+}
+
+template <class T>
+std::vector<T> read_some(const Hdf5Reader& in, const std::string& name, std::size_t columns = 1) {
+  return in.has(name) ? in.read<T>(name, columns) : std::vector<T>{};
+}
+
+void write_points(Hdf5Writer& out, const std::string& name, const std::vector<Vec3>& points) {
+  if (!points.empty()) out.write(name, &points[0].x, points.size(), 3);
+}
+
+std::vector<Vec3> read_points(const Hdf5Reader& in, const std::string& name) {
+  const auto flat = read_some<double>(in, name, 3);
+  std::vector<Vec3> points;
+  for (std::size_t k = 0; k + 2 < flat.size(); k += 3) points.push_back({flat[k], flat[k + 1], flat[k + 2]});
+  return points;
+}
+
+void write_surfaces(Hdf5Writer& out, const ViewFactorFile& content, const std::vector<double>& area_m2) {
+  const Enclosure& e = content.enclosure;
+  std::vector<std::int32_t> kind(e.sphere_count(), kind_particle);
+  std::vector<std::string> name;
+  for (std::size_t i = 0; i < e.sphere_count(); ++i) name.push_back(fmt::format("particle_{}", i));
+  for (const Wall& wall : e.walls) {
+    kind.push_back(kind_wall);
+    name.push_back(wall.name);
+  }
+  kind.push_back(kind_open);
+  name.push_back("open");
+  out.write("/surfaces/kind", kind);
+  out.write("/surfaces/area", area_m2);
+  out.write("/surfaces/name", name);
+  const std::vector<double> black(area_m2.size(), 1);
+  out.write("/surfaces/emissivity", content.emissivity.empty() ? black : content.emissivity);
+}
+
+void write_factors(Hdf5Writer& out, const ExchangeAreas& closed, const std::vector<double>& bound) {
+  std::vector<double> value(closed.value.size()), error(closed.value.size(), 0);
+  for (std::size_t i = 0; i < closed.area_m2.size(); ++i)
+    for (auto k = closed.pattern.row_begin[i]; k < closed.pattern.row_begin[i + 1]; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      if (!(closed.area_m2[i] > 0)) continue;
+      value[at] = closed.value[at] / closed.area_m2[i];
+      if (!closed.variance.empty()) error[at] = std::sqrt(closed.variance[at]) / closed.area_m2[i];
+    }
+  out.write("/view_factors/row_begin", closed.pattern.row_begin);
+  write_some(out, "/view_factors/column", closed.pattern.column);
+  write_some(out, "/view_factors/value", value);
+  write_some(out, "/view_factors/standard_error", error);
+  out.write("/view_factors/zero_hit_bound", bound);
+}
+
+void write_rays(Hdf5Writer& out, const HitCounts& counts) {
+  out.write("/rays/launched", counts.launched);
+  out.write("/rays/row_begin", counts.pattern.row_begin);
+  write_some(out, "/rays/column", counts.pattern.column);
+  write_some(out, "/rays/hits", counts.hits);
+  for (std::size_t kind = 0; kind < pair_kind_names.size(); ++kind)
+    write_some(out, fmt::format("/rays/variance_factor/{}", pair_kind_names[kind]),
+               counts.variance_factor[kind]);
+  out.attribute("/rays", "leaked", std::vector<std::int64_t>{counts.leaked});
+  out.attribute("/rays", "thinning_unit", std::vector<std::int64_t>{counts.thinning_unit});
+  out.attribute("/rays", "sum_variance_factor", counts.sum_variance_factor);
+  out.attribute("/rays", "mean_chord_m", counts.mean_chord_m);
+  out.attribute("/rays", "mean_chord_error_m", counts.mean_chord_error_m);
+}
+
+void write_snapshot(Hdf5Writer& out, const ViewFactorFile& content) {
+  const Enclosure& e = content.enclosure;
+  out.group("/snapshot");
+  write_points(out, "/snapshot/centre", e.centre_m);
+  write_some(out, "/snapshot/radius", e.radius_m);
+  write_some(out, "/snapshot/particle", e.particle);
+  std::vector<Vec3> vertex;
+  std::vector<std::int64_t> vertex_begin{0}, triangle_begin{0};
+  std::vector<std::int32_t> triangle;
+  std::vector<std::string> role;
+  std::vector<double> temperature, emissivity;
+  for (const Wall& wall : e.walls) {
+    vertex.insert(vertex.end(), wall.vertices.begin(), wall.vertices.end());
+    for (const auto& t : wall.triangles) triangle.insert(triangle.end(), t.begin(), t.end());
+    vertex_begin.push_back(static_cast<std::int64_t>(vertex.size()));
+    triangle_begin.push_back(static_cast<std::int64_t>(triangle.size() / 3));
+    role.emplace_back(to_string(wall.role));
+    temperature.push_back(wall.temperature_K);
+    emissivity.push_back(wall.emissivity);
+  }
+  write_points(out, "/snapshot/wall_vertex", vertex);
+  out.write("/snapshot/wall_vertex_begin", vertex_begin);
+  if (!triangle.empty()) out.write("/snapshot/wall_triangle", triangle.data(), triangle.size() / 3, 3);
+  out.write("/snapshot/wall_triangle_begin", triangle_begin);
+  if (!role.empty()) out.write("/snapshot/wall_role", role);
+  write_some(out, "/snapshot/wall_temperature", temperature);
+  write_some(out, "/snapshot/wall_emissivity", emissivity);
+  write_points(out, "/snapshot/box", {e.box.min, e.box.max});
+  for (int axis = 0; axis < 3; ++axis)
+    out.attribute("/snapshot", periodic_name[axis], std::vector<std::int64_t>{e.periodic[axis]});
+  out.attribute("/snapshot", "origin", content.origin);
+}
+
+void write_origin(Hdf5Writer& out, const ViewFactorFile& content) {
+  out.attribute("/", "format", std::string(format_name));
+  out.attribute("/", "version", std::vector<std::int64_t>{view_factor_version});
+  out.attribute("/", "method", content.method);
+  out.attribute("/", "seed", std::vector<std::int64_t>{static_cast<std::int64_t>(content.seed)});
+  out.attribute("/", "closure",
+                std::string(content.closure == Closure::reciprocal ? "reciprocal" : "row_sum"));
+  out.attribute("/", "closure_correction_max", content.closure_correction_max);
+  out.attribute("/", "emissivity", content.emissivity.empty() ? 1.0 : content.emissivity.front());
+  out.attribute("/", "git_sha", std::string(program_git_sha()));
+  out.attribute("/", "closure_defect", content.check.closure_defect);
+  out.attribute("/", "reciprocity_chi2", content.check.reciprocity_chi2);
+  out.attribute("/", "mean_chord_ratio", content.check.mean_chord_ratio);
+  out.attribute("/", "failed", content.check.failed);
+}
+
+void write_spent(Hdf5Writer& out, const ViewFactorFile& content) {
+  out.group("/spent");
+  out.attribute("/spent", "sampling", content.sampling);
+  out.attribute("/spent", "rays", std::vector<std::int64_t>{content.spent.rays});
+  out.attribute("/spent", "rounds", std::vector<std::int64_t>{content.spent.rounds});
+  out.attribute("/spent", "stated",
+                std::string(content.hot_walls.empty() ? "particle_wall_sums" : "particle_fluxes"));
+  out.attribute("/spent", "hot_walls", content.hot_walls);
+  out.attribute("/spent", "error", content.spent.error);
+  out.attribute("/spent", "error_target", content.error_target);
+}
+
+void read_spent(const Hdf5Reader& in, ViewFactorFile& content) {
+  content.sampling = in.text_attribute("/spent", "sampling");
+  content.spent.rays = in.integer_attribute("/spent", "rays");
+  content.spent.rounds = static_cast<int>(in.integer_attribute("/spent", "rounds"));
+  content.spent.error = in.real_attribute("/spent", "error");
+  content.error_target = in.real_attribute("/spent", "error_target");
+  content.hot_walls = in.text_attribute("/spent", "hot_walls");
+}
+
+WallRole role_of(const std::string& text) {
+  for (const auto role : {WallRole::isothermal, WallRole::adiabatic, WallRole::open, WallRole::excluded})
+    if (text == to_string(role)) return role;
+  throw InputError(fmt::format("wall_role = '{}' (not a role) trace the snapshot again", text));
+}
+
+void read_walls(const Hdf5Reader& in, Enclosure& e, const std::vector<std::string>& names) {
+  const auto vertex = read_points(in, "/snapshot/wall_vertex");
+  const auto vertex_begin = in.read<std::int64_t>("/snapshot/wall_vertex_begin");
+  const auto triangle = read_some<std::int32_t>(in, "/snapshot/wall_triangle", 3);
+  const auto triangle_begin = in.read<std::int64_t>("/snapshot/wall_triangle_begin");
+  if (vertex_begin.size() < 2) return;
+  const auto role = in.read_texts("/snapshot/wall_role");
+  const auto temperature = in.read<double>("/snapshot/wall_temperature");
+  const auto emissivity = in.read<double>("/snapshot/wall_emissivity");
+  for (std::size_t w = 0; w + 1 < vertex_begin.size(); ++w) {
+    Wall wall;
+    wall.name = names.at(e.sphere_count() + w);
+    wall.vertices.assign(vertex.begin() + vertex_begin[w], vertex.begin() + vertex_begin[w + 1]);
+    for (auto t = static_cast<std::size_t>(triangle_begin[w]);
+         t < static_cast<std::size_t>(triangle_begin[w + 1]); ++t)
+      wall.triangles.push_back({triangle[3 * t], triangle[3 * t + 1], triangle[3 * t + 2]});
+    wall.role = role_of(role.at(w));
+    wall.temperature_K = temperature.at(w);
+    wall.emissivity = emissivity.at(w);
+    e.walls.push_back(std::move(wall));
+    e.wall.push_back(static_cast<std::int32_t>(w));
+  }
+}
+
+Enclosure read_enclosure(const Hdf5Reader& in) {
+  Enclosure e;
+  e.centre_m = read_points(in, "/snapshot/centre");
+  e.radius_m = read_some<double>(in, "/snapshot/radius");
+  e.particle = read_some<std::int32_t>(in, "/snapshot/particle");
+  read_walls(in, e, in.read_texts("/surfaces/name"));
+  const auto box = read_points(in, "/snapshot/box");
+  e.box = {box.at(0), box.at(1)};
+  for (int axis = 0; axis < 3; ++axis)
+    e.periodic[axis] = in.integer_attribute("/snapshot", periodic_name[axis]) != 0;
+  return e;
+}
+
+HitCounts read_rays(const Hdf5Reader& in) {
+  HitCounts counts;
+  counts.launched = in.read<std::int64_t>("/rays/launched");
+  counts.pattern.row_begin = in.read<std::int64_t>("/rays/row_begin");
+  counts.pattern.column = read_some<std::int32_t>(in, "/rays/column");
+  counts.hits = read_some<std::int64_t>(in, "/rays/hits");
+  for (std::size_t kind = 0; kind < pair_kind_names.size(); ++kind)
+    counts.variance_factor[kind] =
+        read_some<double>(in, fmt::format("/rays/variance_factor/{}", pair_kind_names[kind]));
+  counts.leaked = in.integer_attribute("/rays", "leaked");
+  counts.thinning_unit = in.integer_attribute("/rays", "thinning_unit");
+  counts.sum_variance_factor = in.real_attribute("/rays", "sum_variance_factor");
+  counts.mean_chord_m = in.real_attribute("/rays", "mean_chord_m");
+  counts.mean_chord_error_m = in.real_attribute("/rays", "mean_chord_error_m");
+  return counts;
+}
+
+ExchangeAreas read_closed(const Hdf5Reader& in, const std::vector<double>& area_m2) {
+  ExchangeAreas closed;
+  closed.area_m2 = area_m2;
+  closed.pattern.row_begin = in.read<std::int64_t>("/view_factors/row_begin");
+  closed.pattern.column = read_some<std::int32_t>(in, "/view_factors/column");
+  closed.value = read_some<double>(in, "/view_factors/value");
+  const auto error = read_some<double>(in, "/view_factors/standard_error");
+  for (std::size_t i = 0; i < area_m2.size(); ++i)
+    for (auto k = closed.pattern.row_begin[i]; k < closed.pattern.row_begin[i + 1]; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      closed.value[at] *= area_m2[i];
+      closed.variance.push_back(error[at] * error[at] * area_m2[i] * area_m2[i]);
+    }
+  return closed;
+}
+
+}  // namespace
+
+void write_view_factors(const std::filesystem::path& file, const ViewFactorFile& content) {
+  std::vector<double> area = surface_areas(content.enclosure);
+  area.back() = content.closed.area_m2.back();
+  Hdf5Writer out(file);
+  write_surfaces(out, content, area);
+  write_factors(out, content.closed, zero_hit_bound(content.counts));
+  write_rays(out, content.counts);
+  write_snapshot(out, content);
+  write_origin(out, content);
+  write_spent(out, content);
+  out.commit();
+}
+
+ViewFactorFile read_view_factors(const std::filesystem::path& file) {
+  const Hdf5Reader in(file);
+  if (!in.has_attribute("/", "format") || in.text_attribute("/", "format") != format_name)
+    throw InputError(fmt::format("{}: not a view-factor file (no format = \"{}\") make one with vfgen trace",
+                                 file.string(), format_name));
+  if (const auto version = in.integer_attribute("/", "version"); version != view_factor_version)
+    throw InputError(fmt::format(
+        "{}: version = {} (this program reads {}) {}", file.string(), version, view_factor_version,
+        version > view_factor_version ? "use a newer program" : "trace the snapshot again"));
+  ViewFactorFile content;
+  content.enclosure = read_enclosure(in);
+  content.emissivity = in.read<double>("/surfaces/emissivity");
+  content.counts = read_rays(in);
+  auto area = in.read<double>("/surfaces/area");
+  for (std::size_t i = 0; i < area.size(); ++i) area[i] *= content.emissivity[i];
+  content.closed = read_closed(in, area);
+  content.counts.area_m2 = area;
+  content.counts.spheres = static_cast<std::int32_t>(content.enclosure.sphere_count());
+  content.counts.area_m2.back() = 0;
+  content.method = in.text_attribute("/", "method");
+  content.seed = static_cast<std::uint64_t>(in.integer_attribute("/", "seed"));
+  content.closure = in.text_attribute("/", "closure") == "row_sum" ? Closure::row_sum : Closure::reciprocal;
+  content.closure_correction_max = in.real_attribute("/", "closure_correction_max");
+  content.origin = in.text_attribute("/snapshot", "origin");
+  content.check.closure_defect = in.real_attribute("/", "closure_defect");
+  content.check.reciprocity_chi2 = in.real_attribute("/", "reciprocity_chi2");
+  content.check.mean_chord_ratio = in.real_attribute("/", "mean_chord_ratio");
+  content.check.failed = in.text_attribute("/", "failed");
+  content.check.leaked = content.counts.leaked;
+  read_spent(in, content);
+  return content;
+}
+
+}  // namespace granrad
