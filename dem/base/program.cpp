@@ -11,10 +11,6 @@
 
 #include "dem/base/error.h"
 
-#ifndef GRANRAD_VERSION
-#error "GRANRAD_VERSION and GRANRAD_GIT_SHA are set by dem/CMakeLists.txt"
-#endif
-
 namespace granrad {
 
 namespace {
@@ -37,13 +33,6 @@ std::string duration_text(double seconds) {
 }
 
 }  // namespace
-
-const char* program_version() {
-  return GRANRAD_VERSION;
-}
-const char* program_git_sha() {
-  return GRANRAD_GIT_SHA;
-}
 
 int run_program(const std::string& name, const std::function<int()>& body) {
   try {

@@ -7,12 +7,14 @@
 #include <string_view>
 #include <vector>
 
+#include "dem/base/keys/key.h"
 #include "dem/base/number_rule.h"
 #include "dem/base/vec3.h"
 
 namespace granrad {
 
 class TomlTable;
+struct Exploration;
 
 /// One TOML file with every problem collected: syntax, wrong types, units, bounds, unknown keys. The only
 /// user of toml++. Each room reads the tables it understands; after all have read, `finish()` reports every
@@ -24,6 +26,8 @@ class TomlDocument {
   /// Throws IoError when the file cannot be read, InputError (with line and column) on a syntax error.
   static TomlDocument from_file(const std::filesystem::path& file);
   static TomlDocument from_string(std::string_view text, const std::string& name_in_messages);
+  /// No file: answers its readers as told, for key_catalogue.h. `how` must outlive it.
+  static TomlDocument exploring(const Exploration& how);
   TomlDocument(TomlDocument&&) noexcept;
   TomlDocument& operator=(TomlDocument&&) noexcept;
   ~TomlDocument();
@@ -40,6 +44,10 @@ class TomlDocument {
   void finish();
   /// The document as it is in force (with overrides), as TOML text.
   std::string effective_text() const;
+  /// The same, with every default that was used as a comment: `# restitution = 0.8`.
+  std::string text_with_defaults() const;
+  /// Every reading of a key so far, in order.
+  const std::vector<KeyUse>& uses() const;
 
  private:
   friend class TomlTable;
@@ -48,7 +56,8 @@ class TomlDocument {
   std::unique_ptr<State> state_;
 };
 
-/// A table of the document. A key that is read is a known key. Absent tables read as empty.
+/// A table of the document. A key that is read is a known key. Absent tables read as empty. Keys are given with their
+/// meaning: table.number({"friction", "Coulomb coefficient of sliding"}, {.min = 0}).
 class TomlTable {
  public:
   bool present() const;
@@ -56,29 +65,29 @@ class TomlTable {
   bool has(std::string_view key) const;
   std::vector<std::string> keys() const;
 
-  double number(std::string_view key, const NumberRule& rule);                   ///< required
-  double number(std::string_view key, const NumberRule& rule, double fallback);  ///< optional
-  std::optional<double> optional_number(std::string_view key, const NumberRule& rule);
-  std::int64_t integer(std::string_view key, std::int64_t min, std::int64_t max,
+  double number(const Key& key, const NumberRule& rule);                   ///< required
+  double number(const Key& key, const NumberRule& rule, double fallback);  ///< optional
+  std::optional<double> optional_number(const Key& key, const NumberRule& rule);
+  std::int64_t integer(const Key& key, std::int64_t min, std::int64_t max,
                        std::optional<std::int64_t> fallback = {});
-  bool boolean(std::string_view key, std::optional<bool> fallback = {});
-  std::string string(std::string_view key, std::optional<std::string> fallback = {});
+  bool boolean(const Key& key, std::optional<bool> fallback = {});
+  std::string string(const Key& key, std::optional<std::string> fallback = {});
   /// One of `allowed`; anything else is a problem that lists them and suggests the closest.
-  std::string choice(std::string_view key, const std::vector<std::string>& allowed,
+  std::string choice(const Key& key, const std::vector<std::string>& allowed,
                      std::optional<std::string> fallback = {});
-  /// An existing file, made absolute from the document's folder.
-  std::filesystem::path file(std::string_view key, bool required);
-  Vec3 vec3(std::string_view key, const NumberRule& each, std::optional<Vec3> fallback = {});
-  std::vector<Vec3> vec3_list(std::string_view key, const NumberRule& each, std::size_t min_count);
-  std::vector<double> number_list(std::string_view key, const NumberRule& each, std::size_t min_count);
-  std::vector<std::string> string_list(std::string_view key, std::size_t min_count = 0);
+  /// An existing file: beside the document, else among the installed data (data_folder.h); made absolute.
+  std::filesystem::path file(const Key& key, bool required);
+  Vec3 vec3(const Key& key, const NumberRule& each, std::optional<Vec3> fallback = {});
+  std::vector<Vec3> vec3_list(const Key& key, const NumberRule& each, std::size_t min_count);
+  std::vector<double> number_list(const Key& key, const NumberRule& each, std::size_t min_count);
+  std::vector<std::string> string_list(const Key& key, std::size_t min_count = 0);
 
   /// When `key` names a TOML file, the keys of that file's root that this table lacks are added to it; they
   /// keep their place in that file for messages.
-  void add_keys_from_file(std::string_view key);
+  void add_keys_from_file(const Key& key);
 
-  TomlTable table(std::string_view key);                ///< [key]; absent reads as empty
-  std::vector<TomlTable> tables(std::string_view key);  ///< [[key]]
+  TomlTable table(const Key& key);                ///< [key]; absent reads as empty
+  std::vector<TomlTable> tables(const Key& key);  ///< [[key]]
   /// Records a problem at `key` of this table, or at the table when the key is absent, as `path = value
   /// (message)`; a message that starts with "= " shows the value itself.
   void problem(std::string_view key, std::string_view message);
