@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "dem/base/constants.h"
 
@@ -14,10 +13,10 @@ double rayleigh_time_s(const Material& m, double radius_m) {
 }
 
 double hertz_time_s(const Material& m, double radius_m, double impact_speed_m_s) {
-  const double mass = 4.0 / 3.0 * pi * radius_m * radius_m * radius_m * m.density_kg_m3;
+  const double mass = sphere_volume(radius_m) * m.density_kg_m3;
   const double effective_mass = 0.5 * mass, effective_radius = 0.5 * radius_m;
   const double modulus = 0.5 * m.youngs_modulus_Pa / (1 - m.poisson_ratio * m.poisson_ratio);
-  if (impact_speed_m_s <= 0) return std::numeric_limits<double>::infinity();
+  if (impact_speed_m_s <= 0) return infinity;
   return 2.87 *
          std::pow(effective_mass * effective_mass / (effective_radius * modulus * modulus * impact_speed_m_s),
                   0.2);
@@ -26,7 +25,7 @@ double hertz_time_s(const Material& m, double radius_m, double impact_speed_m_s)
 StepLimit step_limit(const Bed& bed, double fastest_m_s) {
   StepLimit limit;
   for (std::size_t i = 0; i < bed.size(); ++i) fastest_m_s = std::max(fastest_m_s, norm(bed.velocity_m_s[i]));
-  std::vector<double> smallest(bed.materials.size(), std::numeric_limits<double>::infinity());
+  std::vector<double> smallest(bed.materials.size(), infinity);
   for (std::size_t i = 0; i < bed.size(); ++i)
     smallest[bed.material[i]] = std::min(smallest[bed.material[i]], bed.radius_m[i]);
   for (std::size_t k = 0; k < smallest.size(); ++k) {

@@ -1,6 +1,6 @@
 #pragma once
-#include <limits>
 
+#include "dem/base/constants.h"
 #include "dem/bed/bed.h"
 #include "dem/bed/material.h"
 
@@ -18,10 +18,9 @@ double hertz_time_s(const Material& material, double radius_m, double impact_spe
 struct StepLimit {
   /// Shares of the two times a step may take. The paper allows 10-30 % of Rayleigh and at most 10 % of Hertz.
   static constexpr double rayleigh_share = 0.3, hertz_share = 0.1;
-  double rayleigh_s = std::numeric_limits<double>::infinity();  ///< smallest Rayleigh time in the bed
-  double hertz_s =
-      std::numeric_limits<double>::infinity();  ///< smallest Hertz time, two particles meeting head-on
-  double largest_step_s = std::numeric_limits<double>::infinity();  ///< min of the two shares
+  double rayleigh_s = infinity;      ///< smallest Rayleigh time in the bed
+  double hertz_s = infinity;         ///< smallest Hertz time, two particles meeting head-on
+  double largest_step_s = infinity;  ///< min of the two shares
 };
 
 /// Step limit of a bed whose particles move at most at the speed of its fastest, or at `fastest_m_s` if that

@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "dem/base/constants.h"
 #include "dem/base/error.h"
 
 namespace granrad {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// What of `polygon` lies at non-negative height above a plane (Sutherland-Hodgman, one step).
 std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, const Vec3& normal, double offset) {

@@ -6,8 +6,7 @@
 
 namespace granrad {
 
-/// Writes every frame of a case into DIR/export: `vtp` VTK PolyData (ASCII XML), `dump` LAMMPS text dump with
-/// columns id type x y z radius vx vy vz omegax omegay omegaz temperature q_rad. SI. Throws InputError,
+/// Writes every frame of a case into DIR/export, as `vtp`, `dump` or `csv` (export_text.h). Throws InputError,
 /// IoError.
 int export_case(const std::filesystem::path& folder, const std::string& format, const RunOptions& options);
 

@@ -99,7 +99,9 @@ int granrun(int argc, char** argv) {
 
   auto* exporter = app.add_subcommand("export", "frames for OVITO and other tools, into DIR/export");
   exporter->add_option("DIR", a.folder, "folder of a case")->required();
-  exporter->add_option("--to", a.format, "vtp or dump")->required()->check(CLI::IsMember({"vtp", "dump"}));
+  exporter->add_option("--to", a.format, "vtp, dump or csv")
+      ->required()
+      ->check(CLI::IsMember({"vtp", "dump", "csv"}));
   add_common(exporter, a);
 
   try {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "coupling/heat/energy_ledger.h"
 #include "dem/base/constants.h"
@@ -13,8 +12,6 @@
 namespace granrad {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double heat_capacity_J_K(const Bed& bed, std::size_t i) {
   return mass_kg(bed, i) * bed.materials[bed.material[i]].specific_heat_J_kgK;

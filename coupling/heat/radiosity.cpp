@@ -7,8 +7,8 @@
 #include <Eigen/Sparse>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "dem/base/constants.h"
 #include "dem/base/error.h"
 
 namespace granrad {
@@ -159,7 +159,7 @@ RadiosityResult solve_radiosity(const ExchangeAreas& areas, const std::vector<do
   const auto count = static_cast<Eigen::Index>(emissive_power_W_m2.size());
   const Eigen::Map<const Vector> power(emissive_power_W_m2.data(), count), eps(emissivity.data(), count);
   // Closed rows let any reference be taken off: an isothermal enclosure then gives exactly 0.
-  double reference = std::numeric_limits<double>::infinity();
+  double reference = infinity;
   for (Eigen::Index i = 0; i < count; ++i)
     if (eps[i] > 0 && areas.pattern.row_begin[i] < areas.pattern.row_begin[i + 1])
       reference = std::min(reference, power[i]);

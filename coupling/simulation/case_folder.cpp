@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "dem/base/error.h"
 #include "dem/base/text_file.h"
+#include "dem/io/snapshot.h"
 
 namespace granrad {
 
@@ -97,13 +97,9 @@ std::vector<FrameFile> CaseFolder::frames() const {
 }
 
 void CaseFolder::write_series(double step_s) const {
-  nlohmann::ordered_json series;
-  series["file-series-version"] = "1.0";
-  series["files"] = nlohmann::json::array();
-  for (const auto& frame : frames())
-    series["files"].push_back({{"name", "frames/" + frame.file.filename().string()},
-                               {"time", static_cast<double>(frame.step) * step_s}});
-  write_text_file(root_ / "run.hdf.series", series.dump(1) + "\n");
+  std::vector<std::pair<fs::path, double>> times;
+  for (const auto& frame : frames()) times.emplace_back(frame.file, static_cast<double>(frame.step) * step_s);
+  granrad::write_series(root_ / "run.hdf.series", times);
 }
 
 std::string read_text_file(const fs::path& file) {

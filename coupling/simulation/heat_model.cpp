@@ -113,7 +113,7 @@ std::vector<char> in_region(const Bed& bed, const Box& region) {
 double solid_fraction(const Bed& bed, const Box& region) {
   double volume = 0;
   for (std::size_t i = 0; i < bed.size(); ++i)
-    if (region.contains(bed.position_m[i])) volume += 4.0 / 3 * pi * std::pow(bed.radius_m[i], 3);
+    if (region.contains(bed.position_m[i])) volume += sphere_volume(bed.radius_m[i]);
   return region.volume() > 0 ? volume / region.volume() : 0;
 }
 

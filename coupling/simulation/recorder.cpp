@@ -45,15 +45,8 @@ double interval_temperature_K(double before, double now) {
   return before + now > 0 ? before + now : undefined;
 }
 
-double mean_diameter_m(const Bed& bed, double fallback) {
-  if (bed.size() == 0) return fallback;
-  double sum = 0;
-  for (double radius : bed.radius_m) sum += radius;
-  return 2 * sum / static_cast<double>(bed.size());
-}
-
 void fill_coefficients(HistoryRow& row, const Case& c, const Bed& bed, double mean_temperature_K) {
-  const double diameter = mean_diameter_m(bed, c.flow.particle_diameter_m);
+  const double diameter = bed.size() > 0 ? mean_diameter_m(bed.radius_m) : c.flow.particle_diameter_m;
   const double gas = c.heat.conduction.gas ? c.heat.conduction.gas->conductivity_W_mK : 0;
   std::optional<WallCoefficients> found;
   if (std::isfinite(mean_temperature_K))

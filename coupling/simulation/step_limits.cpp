@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "coupling/heat/heat_step.h"
+#include "dem/base/constants.h"
 #include "dem/step_limit.h"
 
 namespace granrad {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double radiation_fraction = 0.1;   // forward Euler, first order: 0.1 of the time constant
 constexpr double normal_deviates = 4;        // of the transverse velocity, both partners
 constexpr double smallest_speed_m_s = 1e-3;  // a bed at rest still settles

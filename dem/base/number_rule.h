@@ -1,6 +1,7 @@
 #pragma once
-#include <limits>
 #include <string>
+
+#include "dem/base/constants.h"
 
 namespace granrad {
 
@@ -8,8 +9,8 @@ namespace granrad {
 /// "0.8 mm" or "1.59 g/s" is converted to it with UDUNITS, and a value of another dimension is a problem.
 struct NumberRule {
   const char* unit = "1";
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
+  double min = -infinity;
+  double max = infinity;
   bool min_exclusive = false, max_exclusive = false;
   const char* why = "";  ///< reason printed with a violated bound, e.g. "grey diffuse surface"
 };

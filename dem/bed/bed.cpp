@@ -2,22 +2,33 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "dem/base/constants.h"
+#include "dem/bed/columns.h"
 
 namespace granrad {
 
 std::size_t Bed::add(const Vec3& position, const Vec3& velocity, double radius, double temperature,
                      std::int32_t material_index) {
-  id.push_back(next_id++);
-  position_m.push_back(position);
-  velocity_m_s.push_back(velocity);
-  angular_velocity_rad_s.push_back({});
-  radius_m.push_back(radius);
-  temperature_K.push_back(temperature);
-  radiative_heat_W.push_back(0);
-  material.push_back(material_index);
+  for_each_column([&](const auto& column) { (this->*column.values).push_back(column.initial); });
+  id.back() = next_id++;
+  position_m.back() = position;
+  velocity_m_s.back() = velocity;
+  radius_m.back() = radius;
+  temperature_K.back() = temperature;
+  material.back() = material_index;
   return id.size() - 1;
+}
+
+void Bed::permute(const std::vector<std::size_t>& order) {
+  for_each_column([&](const auto& column) {
+    auto& values = this->*column.values;
+    auto permuted = values;
+    for (std::size_t k = 0; k < order.size(); ++k) permuted[k] = values[order[k]];
+    values = std::move(permuted);
+  });
 }
 
 void Bed::remove_unless(const std::vector<char>& keep) {
@@ -28,20 +39,13 @@ void Bed::remove_unless(const std::vector<char>& keep) {
     };
     return gone(c.first) || (c.second >= 0 && gone(c.second));
   });
-  const auto compact = [&](auto& column) {
+  for_each_column([&](const auto& column) {
+    auto& values = this->*column.values;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < keep.size(); ++i)
-      if (keep[i]) column[kept++] = column[i];
-    column.resize(kept);
-  };
-  compact(position_m);
-  compact(velocity_m_s);
-  compact(angular_velocity_rad_s);
-  compact(radius_m);
-  compact(temperature_K);
-  compact(radiative_heat_W);
-  compact(material);
-  compact(id);
+      if (keep[i]) values[kept++] = values[i];
+    values.resize(kept);
+  });
 }
 
 std::int64_t Bed::index_of(std::int64_t particle_id) const {
@@ -67,9 +71,13 @@ Vec3 nearest_image(const Bed& bed, Vec3 apart) {
   return apart;
 }
 
+double mean_diameter_m(const std::vector<double>& radius_m) {
+  if (radius_m.empty()) return 0;
+  return 2 * std::accumulate(radius_m.begin(), radius_m.end(), 0.0) / static_cast<double>(radius_m.size());
+}
+
 double mass_kg(const Bed& bed, std::size_t i) {
-  const double r = bed.radius_m[i];
-  return 4.0 / 3.0 * pi * r * r * r * bed.materials[bed.material[i]].density_kg_m3;
+  return sphere_volume(bed.radius_m[i]) * bed.materials[bed.material[i]].density_kg_m3;
 }
 
 }  // namespace granrad

@@ -44,6 +44,8 @@ struct Bed {
   /// Appends a particle at rest in rotation and returns its index; its id is `next_id`, which then grows.
   std::size_t add(const Vec3& position, const Vec3& velocity, double radius, double temperature_K,
                   std::int32_t material_index = 0);
+  /// The particles in the order order[0], order[1], ... (a permutation of the indices).
+  void permute(const std::vector<std::size_t>& order);
   /// Removes the particles with keep[i] == 0, with their contacts; the others keep their order.
   void remove_unless(const std::vector<char>& keep);
   /// Index of the particle with this id (binary search), or -1.
@@ -55,6 +57,8 @@ Vec3 wrapped_into_box(const Bed& bed, Vec3 p);
 /// The shortest of the periodic images of a vector between two places.
 Vec3 nearest_image(const Bed& bed, Vec3 apart);
 
+/// Mean of the diameters, m; 0 when there is none.
+double mean_diameter_m(const std::vector<double>& radius_m);
 /// Mass of particle i: 4/3 pi r^3 rho, kg.
 double mass_kg(const Bed& bed, std::size_t i);
 

@@ -15,13 +15,8 @@ constexpr double cell_margin = 1 + 1e-9;
 CellGrid::CellGrid(const std::vector<Vec3>& points, std::vector<std::int32_t> members, double cell_m,
                    const Box& box, const std::array<bool, 3>& periodic)
     : periodic_(periodic) {
-  Box extent{{}, {}};
-  if (!members.empty()) extent = {points[members[0]], points[members[0]]};
-  for (const auto m : members)
-    for (int axis = 0; axis < 3; ++axis) {
-      extent.min[axis] = std::min(extent.min[axis], points[m][axis]);
-      extent.max[axis] = std::max(extent.max[axis], points[m][axis]);
-    }
+  Box extent = members.empty() ? Box{} : Box::empty();
+  for (const auto m : members) extent.include(points[m]);
   std::uint64_t cells = 1;
   for (int axis = 0; axis < 3; ++axis) {
     const double low = periodic[axis] ? box.min[axis] : extent.min[axis];

@@ -42,7 +42,7 @@ Vec3 polygon_normal(const Wall& wall) {
 }
 
 double next_opening_s(const std::vector<Wall>& walls, double time_s) {
-  double next = std::numeric_limits<double>::infinity();
+  double next = infinity;
   for (const auto& w : walls)
     if (w.contact && w.opens_at_s > time_s) next = std::min(next, w.opens_at_s);
   return next;

@@ -1,11 +1,11 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "dem/base/vec3.h"
+#include "dem/bed/box.h"
 
 namespace granrad {
 
@@ -31,7 +31,7 @@ struct Wall {
   double emissivity = 1;
   bool contact = true;  ///< particles touch it; false: a radiating boundary only (the ends of a channel)
   Vec3 velocity_m_s{};  ///< surface velocity for friction (a conveyor); the geometry does not move
-  double opens_at_s = std::numeric_limits<double>::infinity();  ///< a shutter: no contact from then on
+  double opens_at_s = infinity;  ///< a shutter: no contact from then on
 
   bool is_polygon() const { return triangles.empty(); }
 };
@@ -43,16 +43,6 @@ Vec3 polygon_normal(const Wall& wall);
 
 /// The next time after `time_s` at which a shutter that particles touch opens, or infinity.
 double next_opening_s(const std::vector<Wall>& walls, double time_s);
-
-/// Axis-aligned box.
-struct Box {
-  Vec3 min{}, max{};
-  Vec3 size() const { return max - min; }
-  double volume() const { return size().x * size().y * size().z; }
-  bool contains(const Vec3& p) const {
-    return p.x >= min.x && p.x <= max.x && p.y >= min.y && p.y <= max.y && p.z >= min.z && p.z <= max.z;
-  }
-};
 
 /// The six polygons x_min, x_max, y_min, y_max, z_min, z_max of a box, in this order, normals inward.
 std::array<Wall, 6> box_walls(const Box& box);

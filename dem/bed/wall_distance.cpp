@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "dem/base/constants.h"
+
 namespace granrad {
 
 namespace {
@@ -12,12 +14,8 @@ WallFace make_face(std::vector<Vec3> vertices) {
   for (std::size_t k = 1; k + 1 < vertices.size(); ++k)
     twice_area += cross(vertices[k] - vertices[0], vertices[k + 1] - vertices[0]);
   face.normal = normalized(twice_area);
-  face.bounds = {vertices[0], vertices[0]};
-  for (const auto& v : vertices)
-    for (int axis = 0; axis < 3; ++axis) {
-      face.bounds.min[axis] = std::min(face.bounds.min[axis], v[axis]);
-      face.bounds.max[axis] = std::max(face.bounds.max[axis], v[axis]);
-    }
+  face.bounds = Box::empty();
+  for (const auto& v : vertices) face.bounds.include(v);
   face.vertices = std::move(vertices);
   return face;
 }
@@ -35,7 +33,7 @@ std::vector<WallFace> faces_of(const Wall& wall) {
 double distance_to(const WallFace& face, const Vec3& p) {
   const auto& v = face.vertices;
   bool above_interior = true;
-  double nearest_squared = std::numeric_limits<double>::infinity();
+  double nearest_squared = infinity;
   for (std::size_t k = 0; k < v.size(); ++k) {
     const Vec3 edge = v[(k + 1) % v.size()] - v[k], to_p = p - v[k];
     if (dot(cross(face.normal, edge), to_p) >= 0) continue;  // on the inner side of this edge
@@ -48,7 +46,7 @@ double distance_to(const WallFace& face, const Vec3& p) {
 }
 
 double distance_to(const Wall& wall, const Vec3& p) {
-  double nearest = std::numeric_limits<double>::infinity();
+  double nearest = infinity;
   for (const auto& face : faces_of(wall)) nearest = std::min(nearest, distance_to(face, p));
   return nearest;
 }

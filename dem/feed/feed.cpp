@@ -2,6 +2,7 @@
 
 #include <variant>
 
+#include "dem/base/constants.h"
 #include "dem/feed/hopper_feed.h"
 #include "dem/feed/plug_feed.h"
 
@@ -12,7 +13,7 @@ namespace {
 /// A scene without a feed: nothing comes, nothing goes.
 struct NoFeed {
   void start(Bed&) {}
-  double leaves_below_m() const { return -std::numeric_limits<double>::infinity(); }
+  double leaves_below_m() const { return -infinity; }
   void insert_due(Bed&, FeedTotals&) {}
   void save(StateBlock&) const {}
   void load(const StateBlock&) {}

@@ -17,10 +17,6 @@ namespace {
 constexpr std::uint64_t drop_stream = 0x686f'7070'0000;
 constexpr double default_start_fraction = 0.5;
 
-double sphere_volume(double radius) {
-  return 4.0 / 3.0 * pi * radius * radius * radius;
-}
-
 }  // namespace
 
 HopperFeed::HopperFeed(const Scene& scene)

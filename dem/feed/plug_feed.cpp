@@ -24,10 +24,6 @@ double section(const Box& box) {
   return box.size().x * box.size().y;
 }
 
-double sphere_volume(double radius) {
-  return 4.0 / 3.0 * pi * radius * radius * radius;
-}
-
 /// v = mass flow / (rho phi A); the given speed where no mass flow is.
 double plug_speed(const Scene& scene) {
   const FeedSettings& f = scene.feed;

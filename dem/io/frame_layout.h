@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 
+#include "dem/bed/columns.h"
 #include "dem/bed/material.h"
 
 namespace granrad {
@@ -11,19 +12,11 @@ namespace granrad {
 inline constexpr const char* frame_format = "granrad.frame";
 inline constexpr std::int64_t frame_version = 1;
 
-/// /granrad/particles/NAME is a second name of the column viewers read.
-inline const std::map<std::string, std::string>& particle_links() {
-  static const std::map<std::string, std::string> links{
-      {"id", "/VTKHDF/PointData/id"},
-      {"position_m", "/VTKHDF/Points"},
-      {"velocity_m_s", "/VTKHDF/PointData/v"},
-      {"angular_velocity_rad_s", "/VTKHDF/PointData/omega"},
-      {"radius_m", "/VTKHDF/PointData/radius"},
-      {"temperature_K", "/VTKHDF/PointData/temperature"},
-      {"radiative_heat_W", "/VTKHDF/PointData/q_rad"},
-      {"material", "/VTKHDF/PointData/material"},
-  };
-  return links;
+/// Where viewers look for a column of the Bed; /granrad/particles/NAME is a second name of it.
+template <class T>
+std::string view_path(const BedColumn<T>& column) {
+  return std::string(column.name) == "position_m" ? "/VTKHDF/Points"
+                                                  : std::string("/VTKHDF/PointData/") + column.view;
 }
 
 /// /granrad/materials/NAME, one value per material.

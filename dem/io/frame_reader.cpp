@@ -12,11 +12,29 @@ namespace granrad {
 
 namespace {
 
-std::vector<Vec3> read_vectors(const Hdf5Reader& in, const std::string& name) {
+template <class T>
+std::vector<T> read_values(const Hdf5Reader& in, const std::string& name) {
+  return in.read<T>(name);
+}
+template <>
+std::vector<Vec3> read_values(const Hdf5Reader& in, const std::string& name) {
   const std::vector<double> flat = in.read<double>(name, 3);
   std::vector<Vec3> values(flat.size() / 3);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = {flat[3 * i], flat[3 * i + 1], flat[3 * i + 2]};
   return values;
+}
+
+bool holds(ColumnKind kind, double value) {
+  return std::isfinite(value) && (kind == ColumnKind::real || value > 0);
+}
+bool holds(ColumnKind, const Vec3& value) {
+  return is_finite(value);
+}
+bool holds(ColumnKind, std::int64_t value) {
+  return value >= 0;
+}
+bool holds(ColumnKind, std::int32_t value) {
+  return value >= 0;
 }
 
 /// Reads a frame whose contents may be anything: `sound` refuses what a Bed must not hold.
@@ -36,7 +54,7 @@ class FrameReader {
     read_particles(bed);
     read_contacts(bed);
     read_walls(bed);
-    const auto box = read_vectors(in_, "/granrad/box");
+    const auto box = read_values<Vec3>(in_, "/granrad/box");
     const auto periodic = in_.read<std::uint8_t>("/granrad/periodic");
     sound(box.size() == 2 && periodic.size() == 3, "box");
     bed.box = {box[0], box[1]};
@@ -46,15 +64,15 @@ class FrameReader {
   }
 
  private:
-  void check_format() const {
+  void check_format() {
     if (!in_.has_attribute("/granrad", "format") || in_.text_attribute("/granrad", "format") != frame_format)
       throw InputError(
           fmt::format("{}: is not a frame of granrad (no /granrad with format \"{}\")", file_, frame_format));
-    const auto version = in_.integer_attribute("/granrad", "version");
-    if (version != frame_version)
-      throw InputError(
-          fmt::format("{}: frame version {} (this program reads version {}) use the program that wrote it",
-                      file_, version, frame_version));
+    version_ = in_.integer_attribute("/granrad", "version");
+    if (version_ < 1 || version_ > frame_version)
+      throw InputError(fmt::format(
+          "{}: frame version {} (this program reads versions up to {}) use the program that wrote it", file_,
+          version_, frame_version));
   }
   void sound(bool holds, const std::string& what) const {
     if (!holds)
@@ -62,34 +80,29 @@ class FrameReader {
   }
 
   void read_particles(Bed& bed) const {
-    const std::string at = "/granrad/particles/";
-    bed.id = in_.read<std::int64_t>(at + "id");
-    bed.position_m = read_vectors(in_, at + "position_m");
-    bed.velocity_m_s = read_vectors(in_, at + "velocity_m_s");
-    bed.angular_velocity_rad_s = read_vectors(in_, at + "angular_velocity_rad_s");
-    bed.radius_m = in_.read<double>(at + "radius_m");
-    bed.temperature_K = in_.read<double>(at + "temperature_K");
-    bed.radiative_heat_W = in_.read<double>(at + "radiative_heat_W");
-    bed.material = in_.read<std::int32_t>(at + "material");
+    for_each_column([&]<class T>(const BedColumn<T>& column) {
+      std::vector<T>& values = bed.*column.values;
+      if (version_ >= column.since_frame)
+        values = read_values<T>(in_, fmt::format("/granrad/particles/{}", column.name));
+      else
+        values.assign(bed.size(), column.initial);
+      sound(values.size() == bed.size(), fmt::format("the length of column {}", column.name));
+      for (std::size_t i = 0; i < values.size(); ++i)
+        sound(holds(column.kind, values[i]), fmt::format("{} of particle {}", column.name, bed.id[i]));
+    });
     const std::size_t n = bed.size();
-    sound(bed.position_m.size() == n && bed.velocity_m_s.size() == n &&
-              bed.angular_velocity_rad_s.size() == n && bed.radius_m.size() == n &&
-              bed.temperature_K.size() == n && bed.radiative_heat_W.size() == n && bed.material.size() == n,
-          "the length of a particle column");
     sound(std::adjacent_find(bed.id.begin(), bed.id.end(), std::greater_equal<>()) == bed.id.end() &&
               (n == 0 || (bed.id.front() >= 0 && bed.id.back() < bed.next_id)),
           "the order of particle ids");
     for (std::size_t i = 0; i < n; ++i)
-      sound(is_finite(bed.position_m[i]) && is_finite(bed.velocity_m_s[i]) && bed.radius_m[i] > 0 &&
-                std::isfinite(bed.radius_m[i]) && std::isfinite(bed.temperature_K[i]) &&
-                bed.material[i] >= 0 && bed.material[i] < std::max<std::int32_t>(1, bed.materials.size()),
-            fmt::format("particle {}", bed.id[i]));
+      sound(bed.material[i] < std::max<std::int32_t>(1, static_cast<std::int32_t>(bed.materials.size())),
+            fmt::format("the material of particle {}", bed.id[i]));
   }
 
   void read_contacts(Bed& bed) const {
     const auto first = in_.read<std::int64_t>("/granrad/contacts/first");
     const auto second = in_.read<std::int64_t>("/granrad/contacts/second");
-    const auto displacement = read_vectors(in_, "/granrad/contacts/displacement_m");
+    const auto displacement = read_values<Vec3>(in_, "/granrad/contacts/displacement_m");
     sound(second.size() == first.size() && displacement.size() == first.size(), "contact memory");
     for (std::size_t k = 0; k < first.size(); ++k)
       bed.contacts.push_back({first[k], second[k], displacement[k]});
@@ -114,8 +127,8 @@ class FrameReader {
     const auto temperature = in_.read<double>(at + "temperature_K"),
                emissivity = in_.read<double>(at + "emissivity"),
                opens_at = in_.read<double>(at + "opens_at_s");
-    const auto velocity = read_vectors(in_, at + "velocity_m_s"),
-               vertices = read_vectors(in_, at + "vertices_m");
+    const auto velocity = read_values<Vec3>(in_, at + "velocity_m_s"),
+               vertices = read_values<Vec3>(in_, at + "vertices_m");
     const auto vertex_begin = in_.read<std::int64_t>(at + "vertex_begin"),
                triangle_begin = in_.read<std::int64_t>(at + "triangle_begin");
     const std::size_t n = names.size();
@@ -164,6 +177,7 @@ class FrameReader {
 
   std::string file_;
   Hdf5Reader in_;
+  std::int64_t version_ = 0;
 };
 
 }  // namespace

@@ -1,9 +1,6 @@
-#include <fmt/core.h>
-
-#include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "dem/base/error.h"
+#include "dem/base/text_file.h"
 #include "dem/io/snapshot.h"
 
 namespace granrad {
@@ -16,14 +13,7 @@ void write_series(const std::filesystem::path& series_file,
     series["files"].push_back(
         {{"name", std::filesystem::absolute(file).lexically_relative(folder).generic_string()},
          {"time", time_s}});
-  std::filesystem::path temporary = series_file;
-  temporary += ".tmp";
-  std::ofstream out(temporary);
-  out << series.dump(1) << '\n';
-  out.close();
-  std::error_code failed;
-  if (out) std::filesystem::rename(temporary, series_file, failed);
-  if (!out || failed) throw IoError(fmt::format("{}: cannot be written", series_file.string()));
+  write_text_file(series_file, series.dump(1) + "\n");
 }
 
 }  // namespace granrad

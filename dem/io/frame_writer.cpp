@@ -16,19 +16,31 @@ namespace {
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double));
 
-void write_vectors(Hdf5Writer& out, const std::string& name, const std::vector<Vec3>& values) {
+void write_values(Hdf5Writer& out, const std::string& name, const std::vector<Vec3>& values) {
   out.write(name, values.empty() ? nullptr : &values[0].x, values.size(), 3);
+}
+template <class T>
+void write_values(Hdf5Writer& out, const std::string& name, const std::vector<T>& values) {
+  out.write(name, values);
+}
+
+bool finite(double value) {
+  return std::isfinite(value);
+}
+bool finite(const Vec3& value) {
+  return is_finite(value);
 }
 
 /// Throws NumericalError: what is not finite must not leave the program.
 void check(const std::filesystem::path& file, const Bed& bed,
            const std::map<std::string, std::vector<double>>& extra) {
-  for (std::size_t i = 0; i < bed.size(); ++i)
-    if (!is_finite(bed.position_m[i]) || !is_finite(bed.velocity_m_s[i]) ||
-        !is_finite(bed.angular_velocity_rad_s[i]) || !std::isfinite(bed.temperature_K[i]) ||
-        !std::isfinite(bed.radiative_heat_W[i]))
-      throw NumericalError(fmt::format("{}: the state of particle {} is not finite; nothing written",
-                                       file.string(), bed.id[i]));
+  for_each_column([&](const auto& column) {
+    const auto& values = bed.*column.values;
+    for (std::size_t i = 0; i < bed.size(); ++i)
+      if (!finite(values[i]))
+        throw NumericalError(fmt::format("{}: {} of particle {} is not finite; nothing written",
+                                         file.string(), column.name, bed.id[i]));
+  });
   for (const auto& [name, column] : extra)
     if (column.size() != bed.size())
       throw NumericalError(fmt::format("{}: column {} has {} values for {} particles", file.string(), name,
@@ -49,14 +61,7 @@ void write_vtk(Hdf5Writer& out, const Bed& bed, const std::map<std::string, std:
   out.write("/VTKHDF/Connectivity", index.data(), bed.size());
   out.write("/VTKHDF/Offsets", index);
   out.write("/VTKHDF/Types", std::vector<std::uint8_t>(n, vtk_vertex));
-  write_vectors(out, "/VTKHDF/Points", bed.position_m);
-  out.write("/VTKHDF/PointData/id", bed.id);
-  out.write("/VTKHDF/PointData/radius", bed.radius_m);
-  out.write("/VTKHDF/PointData/temperature", bed.temperature_K);
-  write_vectors(out, "/VTKHDF/PointData/v", bed.velocity_m_s);
-  write_vectors(out, "/VTKHDF/PointData/omega", bed.angular_velocity_rad_s);
-  out.write("/VTKHDF/PointData/q_rad", bed.radiative_heat_W);
-  out.write("/VTKHDF/PointData/material", bed.material);
+  for_each_column([&](const auto& column) { write_values(out, view_path(column), bed.*column.values); });
   for (const auto& [name, column] : extra) out.write("/VTKHDF/PointData/" + name, column);
 }
 
@@ -70,7 +75,7 @@ void write_contacts(Hdf5Writer& out, const std::vector<ContactMemory>& contacts)
   }
   out.write("/granrad/contacts/first", first);
   out.write("/granrad/contacts/second", second);
-  write_vectors(out, "/granrad/contacts/displacement_m", displacement);
+  write_values(out, "/granrad/contacts/displacement_m", displacement);
 }
 
 void write_materials(Hdf5Writer& out, const std::vector<Material>& materials) {
@@ -111,8 +116,8 @@ void write_walls(Hdf5Writer& out, const std::vector<Wall>& walls) {
   out.write(at + "temperature_K", temperature);
   out.write(at + "emissivity", emissivity);
   out.write(at + "opens_at_s", opens_at);
-  write_vectors(out, at + "velocity_m_s", velocity);
-  write_vectors(out, at + "vertices_m", vertices);
+  write_values(out, at + "velocity_m_s", velocity);
+  write_values(out, at + "vertices_m", vertices);
   out.write(at + "vertex_begin", vertex_begin);
   out.write(at + "triangles", corners.data(), corners.size() / 3, 3);
   out.write(at + "triangle_begin", triangle_begin);
@@ -144,11 +149,13 @@ void write_frame(const std::filesystem::path& file, const Bed& bed, const StateB
   out.attribute("/granrad", "time_s", bed.time_s);
   out.attribute("/granrad", "step", std::vector<std::int64_t>{bed.step});
   out.attribute("/granrad", "next_id", std::vector<std::int64_t>{bed.next_id});
-  for (const auto& [name, source] : particle_links()) out.link(source, "/granrad/particles/" + name);
+  for_each_column([&](const auto& column) {
+    out.link(view_path(column), fmt::format("/granrad/particles/{}", column.name));
+  });
   write_contacts(out, bed.contacts);
   write_materials(out, bed.materials);
   write_walls(out, bed.walls);
-  write_vectors(out, "/granrad/box", {bed.box.min, bed.box.max});
+  write_values(out, "/granrad/box", {bed.box.min, bed.box.max});
   out.write("/granrad/periodic", std::vector<std::uint8_t>(bed.periodic.begin(), bed.periodic.end()));
   write_state(out, state);
   out.commit();

@@ -17,13 +17,6 @@ namespace {
 constexpr std::size_t problems_shown = 20;
 constexpr double largest_exact_integer = 9007199254740992.0;  // 2^53
 
-template <class T>
-std::vector<T> permuted(const std::vector<T>& values, const std::vector<std::size_t>& order) {
-  std::vector<T> result(values.size());
-  for (std::size_t k = 0; k < order.size(); ++k) result[k] = values[order[k]];
-  return result;
-}
-
 }  // namespace
 
 ParticleTable::ParticleTable(std::string file, std::size_t header_line, std::vector<std::string> columns,
@@ -116,13 +109,7 @@ void ParticleTable::sort_by_id() {
     if (bed.id[order[k]] == bed.id[order[k - 1]] && problem_count_ == 0)
       problem(line_[order[k]], fmt::format("id = {} (also on line {}) ids must differ", bed.id[order[k]],
                                            line_[order[k - 1]]));
-  bed.id = permuted(bed.id, order);
-  bed.position_m = permuted(bed.position_m, order);
-  bed.velocity_m_s = permuted(bed.velocity_m_s, order);
-  bed.angular_velocity_rad_s = permuted(bed.angular_velocity_rad_s, order);
-  bed.radius_m = permuted(bed.radius_m, order);
-  bed.temperature_K = permuted(bed.temperature_K, order);
-  bed.material = permuted(bed.material, order);
+  bed.permute(order);
   if (bed.size() > 0) bed.next_id = bed.id.back() + 1;
   snapshot_.file_row = std::move(order);
 }

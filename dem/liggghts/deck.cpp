@@ -25,11 +25,6 @@ std::vector<const Material*> number_types(const Bed& bed, Deck& deck) {
   return types;
 }
 
-void widen(Box& box, const Vec3& p) {
-  for (int a = 0; a < 3; ++a)
-    box.min[a] = std::min(box.min[a], p[a]), box.max[a] = std::max(box.max[a], p[a]);
-}
-
 /// The smallest extent of the domain, which LIGGGHTS widens as particles move: around the walls; without
 /// walls around the particles, in large blocks so that it seldom changes.
 Box extent(const Bed& bed, const WallMeshes& walls, double radius) {
@@ -37,8 +32,8 @@ Box extent(const Bed& bed, const WallMeshes& walls, double radius) {
   Box box = has_walls ? bed.box : Box{bed.position_m[0], bed.position_m[0]};
   for (const auto& mesh : walls.meshes())
     for (const auto& triangle : mesh.triangles)
-      for (const auto& corner : triangle) widen(box, corner);
-  for (std::size_t i = 0; i < bed.size() && !has_walls; ++i) widen(box, bed.position_m[i]);
+      for (const auto& corner : triangle) box.include(corner);
+  for (std::size_t i = 0; i < bed.size() && !has_walls; ++i) box.include(bed.position_m[i]);
   const double block = has_walls ? 4 * radius : 16 * radius, margin = has_walls ? 1 : 0.25;
   for (int a = 0; a < 3; ++a) {
     box.min[a] = bed.periodic[a] ? bed.box.min[a] : std::floor(box.min[a] / block - margin) * block;

@@ -1,8 +1,8 @@
 #include "dem/liggghts/wall_meshes.h"
 
 #include <algorithm>
-#include <limits>
 
+#include "dem/base/constants.h"
 #include "dem/bed/wall_distance.h"
 
 namespace granrad::liggghts {
@@ -63,7 +63,7 @@ WallMeshes::Place WallMeshes::nearest(std::int64_t face, const Vec3& p) const {
     return {0, -1};
   Place best = first_[face];
   const auto& faces = face_[best.mesh];
-  double least = std::numeric_limits<double>::infinity();
+  double least = infinity;
   for (auto t = static_cast<std::size_t>(best.triangle); t < faces.size() && faces[t] == face; ++t) {
     const auto& corners = meshes_[best.mesh].triangles[t];
     const double distance = distance_to(Wall{.vertices = {corners.begin(), corners.end()}}, p);

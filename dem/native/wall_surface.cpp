@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <tuple>
+
+#include "dem/base/constants.h"
 
 namespace granrad::native {
 namespace {
@@ -179,7 +180,7 @@ bool WallSurface::foot_inside(std::int32_t f, const Vec3& p) const {
 
 double WallSurface::distance(std::int32_t f, const Vec3& p) const {
   if (foot_inside(f, p)) return std::abs(height(f, p));
-  double nearest = std::numeric_limits<double>::infinity();
+  double nearest = infinity;
   for (const auto& side : facets_[f].sides) {
     const Edge& e = edges_[side.edge];
     nearest = std::min(nearest, distance_to_segment(p, e.start, e.direction, e.length));
@@ -249,7 +250,7 @@ void WallSurface::touches(std::int32_t f, const Vec3& p, double reach_m, std::ve
 }
 
 WallSurface::Touch WallSurface::nearest(std::int32_t f, const Vec3& p) const {
-  Touch best{facets_[f].group, f, 1, {}, {}, std::numeric_limits<double>::infinity()};
+  Touch best{facets_[f].group, f, 1, {}, {}, infinity};
   for (const auto& side : facets_[f].sides) {
     const Edge& e = edges_[side.edge];
     const Vec3 point = e.start + e.direction * std::clamp(e.along(p), 0.0, e.length);

@@ -18,10 +18,6 @@ namespace {
 
 enum Stream : std::uint64_t { size_stream = 0x7061'636b'0000, cell_stream, start_stream, move_stream };
 
-double sphere_volume(double radius) {
-  return 4.0 / 3.0 * pi * radius * radius * radius;
-}
-
 /// Where centres may be: the box less a radius at each wall.
 Box centre_box(const PackingBox& where, double radius) {
   Box b = where.box;

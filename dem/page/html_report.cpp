@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "dem/base/constants.h"
 #include "dem/base/program.h"
 #include "dem/base/text_file.h"
 #include "dem/page/svg_chart.h"
@@ -101,7 +101,7 @@ void HtmlReport::chart(const Chart& chart) {
 void HtmlReport::histogram(const std::string& title, const std::string& x_label,
                            const std::vector<std::pair<std::string, std::vector<double>>>& samples,
                            int bins) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
+  double low = infinity, high = -low;
   for (const auto& [label, values] : samples)
     for (const double v : values)
       if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);

@@ -50,12 +50,9 @@ std::vector<Material> read_materials(TomlTable root) {
 }
 
 /// The mean diameter of a particle file; 0 with a problem recorded when it cannot be read.
-double mean_diameter_m(TomlTable& particles, const std::filesystem::path& file) {
+double mean_diameter_of_file(TomlTable& particles, const std::filesystem::path& file) {
   try {
-    const Bed bed = read_snapshot(file).bed;
-    double sum = 0;
-    for (const double r : bed.radius_m) sum += 2 * r;
-    return bed.size() > 0 ? sum / static_cast<double>(bed.size()) : 0;
+    return mean_diameter_m(read_snapshot(file).bed.radius_m);
   } catch (const Error& error) {
     particles.problem("file", error.what());
     return 0;
@@ -73,7 +70,7 @@ void read_particles(TomlTable table, Scene& scene) {
   else if (const auto given = table.optional_number("diameter_m", diameter))
     scene.particle_diameter_m = *given;
   else if (!scene.particle_file.empty())
-    scene.particle_diameter_m = mean_diameter_m(table, scene.particle_file);
+    scene.particle_diameter_m = mean_diameter_of_file(table, scene.particle_file);
   if (scene.particle_file.empty() && !from_feed && !table.has("file"))
     table.problem("", "there are no particles: give [particles] file or a [feed]");
 }

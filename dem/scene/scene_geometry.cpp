@@ -164,13 +164,9 @@ class GeometryReader {
       return;
     }
     Box& around = scene_.box;
-    around = {scene_.walls[0].vertices[0], scene_.walls[0].vertices[0]};
+    around = Box::empty();
     for (const auto& wall : scene_.walls)
-      for (const auto& v : wall.vertices)
-        for (int axis = 0; axis < 3; ++axis) {
-          around.min[axis] = std::min(around.min[axis], v[axis]);
-          around.max[axis] = std::max(around.max[axis], v[axis]);
-        }
+      for (const auto& v : wall.vertices) around.include(v);
   }
 
   void read_region(TomlTable region) {

@@ -54,16 +54,11 @@ void refuse_what_a_table_cannot_serve(const CorrelationTable& table, const Enclo
   if (!problems.empty()) throw InputError(problems);
 }
 
-double mean_diameter_m(const Enclosure& enclosure) {
-  const double sum = std::accumulate(enclosure.radius_m.begin(), enclosure.radius_m.end(), 0.0);
-  return 2 * sum / static_cast<double>(enclosure.radius_m.size());
-}
-
 /// Every sphere's neighbours within the cutoff.
 std::vector<Row> sphere_rows(const Correlation& correlation, const Enclosure& enclosure,
                              const std::vector<double>& area) {
   const std::size_t n = enclosure.sphere_count();
-  const double cutoff_m = correlation.pp_cutoff() * mean_diameter_m(enclosure) * 1.01;
+  const double cutoff_m = correlation.pp_cutoff() * mean_diameter_m(enclosure.radius_m) * 1.01;
   std::vector<std::int32_t> all(n);
   std::iota(all.begin(), all.end(), 0);
   const CellGrid grid(enclosure.centre_m, all, cutoff_m, enclosure.box, enclosure.periodic);
@@ -168,7 +163,7 @@ double solid_fraction(const Enclosure& enclosure) {
         "with "
         "walls, or give the solid fraction");
   double solid = 0;
-  for (const double r : enclosure.radius_m) solid += 4.0 / 3.0 * pi * r * r * r;
+  for (const double r : enclosure.radius_m) solid += sphere_volume(r);
   return solid / *volume;
 }
 
@@ -179,8 +174,8 @@ ExchangeAreas correlation_exchange_areas(const CorrelationTable& table, const En
   const bool empty = enclosure.sphere_count() == 0;
   std::vector<Row> rows;
   const auto exact = unobstructed_factors(enclosure);
-  const auto walls =
-      wall_exchange(enclosure, empty ? 0 : extinction_1_m(solid_fraction, mean_diameter_m(enclosure)));
+  const auto walls = wall_exchange(
+      enclosure, empty ? 0 : extinction_1_m(solid_fraction, mean_diameter_m(enclosure.radius_m)));
   if (empty) {
     rows.resize(enclosure.surface_count());
     add_wall_pairs(0, walls, rows);

@@ -1,7 +1,6 @@
 #include "fit/correlation/wall_exchange.h"
 
 #include <cmath>
-#include <limits>
 
 #include "dem/base/constants.h"
 #include "raytrace/facets.h"
@@ -34,7 +33,7 @@ double trace_wall(const Enclosure& empty, const Emitter& emitter, const Facets& 
   for (int k = 0; k < rays_per_wall; ++k) {
     const auto u = low_discrepancy_point(k);
     const auto ray = emitter.emit(static_cast<std::int32_t>(v), u[0], u[1], u[2], u[3]);
-    double nearest = std::numeric_limits<double>::infinity();
+    double nearest = infinity;
     std::int32_t wall = -1;
     for (std::int32_t f = 0; f < facets.count(); ++f) {
       if (facets.wall(f) == static_cast<std::int32_t>(v) && empty.walls[v].is_polygon()) continue;

@@ -8,14 +8,13 @@
 #include <cmath>
 #include <limits>
 
+#include "dem/base/constants.h"
 #include "dem/base/error.h"
 #include "raytrace/embree/tracing_geometry.h"
 
 namespace granrad {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A ray in flight and the nearest things it has met: what the Embree callbacks read and write. Lengths in
 /// tracing units, double precision; Embree's own single-precision ray only steers the walk through the tree.

@@ -6,15 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "dem/base/constants.h"
 #include "dem/base/error.h"
 
 namespace granrad {
 
-namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-}  // namespace
+namespace {}  // namespace
 
 TracingGeometry::TracingGeometry(const Enclosure& enclosure)
     : spheres(static_cast<std::int32_t>(enclosure.sphere_count())),
@@ -26,13 +23,7 @@ TracingGeometry::TracingGeometry(const Enclosure& enclosure)
 }
 
 void TracingGeometry::choose_units(const Enclosure& enclosure) {
-  Vec3 low{infinity, infinity, infinity}, high = -low;
-  const auto include = [&](const Vec3& p, double r) {
-    for (int k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], p[k] - r);
-      high[k] = std::max(high[k], p[k] + r);
-    }
-  };
+  Box all = Box::empty();
   std::vector<std::string> problems;
   double radius_sum = 0;
   for (std::size_t i = 0; i < enclosure.sphere_count(); ++i) {
@@ -46,12 +37,12 @@ void TracingGeometry::choose_units(const Enclosure& enclosure) {
       continue;
     }
     radius_sum += r;
-    include(c, r);
+    all.include(c, r);
   }
   for (const Wall& wall : enclosure.walls)
     for (const Vec3& v : wall.vertices) {
       if (!is_finite(v)) problems.push_back(fmt::format("wall '{}': a vertex is not finite", wall.name));
-      include(v, 0);
+      all.include(v);
     }
   if (!problems.empty()) throw InputError(problems);
   for (int k = 0; k < 3; ++k)
@@ -62,12 +53,12 @@ void TracingGeometry::choose_units(const Enclosure& enclosure) {
               fmt::format("sphere {}: radius = {} m (its diameter must be smaller than the period "
                           "{} m)",
                           i, enclosure.radius_m[i], enclosure.box.size()[k]));
-      low[k] = enclosure.box.min[k];
-      high[k] = enclosure.box.max[k];
+      all.min[k] = enclosure.box.min[k];
+      all.max[k] = enclosure.box.max[k];
     }
-  if (!(low.x <= high.x)) return;  // nothing but surroundings
-  centre_m = 0.5 * (low + high);
-  const double extent = norm(high - low);
+  if (all.is_empty()) return;  // nothing but surroundings
+  centre_m = 0.5 * (all.min + all.max);
+  const double extent = norm(all.size());
   unit_m = spheres > 0 ? radius_sum / spheres : extent / 100;
   pad = 1e-6 * extent / unit_m;
   box_min = to_units(enclosure.box.min);

@@ -9,6 +9,7 @@
 
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
+#include "dem/base/morton.h"
 #include "raytrace/embree/embree_tracer.h"
 #include "raytrace/facets.h"
 
@@ -22,24 +23,20 @@ constexpr double max_cells = 67108864;  // 2^26 lines of 4 bytes: 256 MiB per th
 /// by it.
 constexpr double corner_tolerance = 1e-7;
 
-struct Bounds {
-  Vec3 low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-  void include(const Vec3& p, double margin = 0) {
-    for (int k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], p[k] - margin);
-      high[k] = std::max(high[k], p[k] + margin);
-    }
-  }
-  Vec3 middle() const { return low.x > high.x ? Vec3{} : 0.5 * (low + high); }
-  double diameter() const { return low.x > high.x ? 0 : norm(high - low); }
-  std::vector<Vec3> corners() const {
-    if (low.x > high.x) return {Vec3{}};
-    std::vector<Vec3> all;
-    for (int k = 0; k < 8; ++k)
-      all.push_back({k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z});
-    return all;
-  }
-};
+Vec3 middle_of(const Box& box) {
+  return box.is_empty() ? Vec3{} : 0.5 * (box.min + box.max);
+}
+double diameter_of(const Box& box) {
+  return box.is_empty() ? 0 : norm(box.size());
+}
+std::vector<Vec3> corners_of(const Box& box) {
+  if (box.is_empty()) return {Vec3{}};
+  std::vector<Vec3> all;
+  for (int k = 0; k < 8; ++k)
+    all.push_back(
+        {k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y, k & 4 ? box.max.z : box.min.z});
+  return all;
+}
 
 /// Problems that make the enclosure unfit before any geometry can be judged.
 std::vector<std::string> shape_problems(const Enclosure& e) {
@@ -160,22 +157,14 @@ std::vector<LineScene::Face> faces_about(const Enclosure& e, const Vec3& middle,
   return faces;
 }
 
-/// 10 bits of each coordinate in turn (Morton order).
-std::uint32_t interleaved(const Vec3& at) {
-  std::uint32_t code = 0;
-  for (int bit = 9; bit >= 0; --bit)
-    for (int k = 0; k < 3; ++k) code = code << 1 | (static_cast<std::uint32_t>(at[k]) >> bit & 1);
-  return code;
-}
-
 /// Indices of the points, such that neighbours in space mostly follow each other.
-std::vector<std::int32_t> order_in_space(const std::vector<Vec3>& points, const Bounds& bounds) {
+std::vector<std::int32_t> order_in_space(const std::vector<Vec3>& points, const Box& bounds) {
   constexpr double cells = 1023.999;
-  const double scale = cells / std::max(bounds.diameter(), 1e-300);
+  const double scale = cells / std::max(diameter_of(bounds), 1e-300);
   using Coded = std::pair<std::uint32_t, std::int32_t>;
   std::vector<Coded> codes(points.size()), other(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
-    codes[i] = {interleaved(scale * (points[i] - bounds.low)), static_cast<std::int32_t>(i)};
+    codes[i] = {morton_code(scale * (points[i] - bounds.min)), static_cast<std::int32_t>(i)};
   constexpr int digit = 10;
   for (int shift = 0; shift < 30; shift += digit) {
     std::uint32_t begin[1 << digit] = {}, sum = 0;
@@ -243,7 +232,7 @@ LineScene::LineScene(const Enclosure& enclosure, double lines_per_disc)
   auto problems = shape_problems(enclosure);
   if (!problems.empty()) throw InputError(problems);
 
-  Bounds all;
+  Box all = Box::empty();
   for (const Wall& wall : enclosure.walls)
     for (const Vec3& p : wall.vertices) all.include(p);
   for (std::size_t i = 0; i < enclosure.sphere_count(); ++i)
@@ -253,7 +242,7 @@ LineScene::LineScene(const Enclosure& enclosure, double lines_per_disc)
     all.include(enclosure.box.min), all.include(enclosure.box.max);
     for (int k = 0; k < 3; ++k) period[k] = enclosure.periodic[k] ? enclosure.box.size()[k] : 0;
   }
-  middle = all.middle();
+  middle = middle_of(all);
   surface = order_in_space(enclosure.centre_m, all);
   for (const std::int32_t s : surface) {
     Vec3 c = enclosure.centre_m[static_cast<std::size_t>(s)];
@@ -264,7 +253,7 @@ LineScene::LineScene(const Enclosure& enclosure, double lines_per_disc)
     radius.push_back(enclosure.radius_m[static_cast<std::size_t>(s)]);
   }
 
-  const double tolerance = corner_tolerance * all.diameter();
+  const double tolerance = corner_tolerance * diameter_of(all);
   faces = faces_about(enclosure, middle, tolerance);
   closed = !periodic && edges_close(faces);
   if (periodic && !(edges_close_periodically(faces, period, 10 * tolerance) && holds_volume(enclosure)))
@@ -280,8 +269,8 @@ LineScene::LineScene(const Enclosure& enclosure, double lines_per_disc)
   if (walls_hold_all)
     for (const Face& face : faces) hull.insert(hull.end(), face.corners.begin(), face.corners.end());
   else
-    for (const Vec3& p : all.corners()) hull.push_back(p - middle);
-  spacing = line_spacing(enclosure, lines_per_disc, all.diameter());
+    for (const Vec3& p : corners_of(all)) hull.push_back(p - middle);
+  spacing = line_spacing(enclosure, lines_per_disc, diameter_of(all));
   for (double r : radius) reach.push_back(static_cast<float>(r / spacing));
   if (periodic) add_periods(enclosure);
 }
@@ -295,7 +284,7 @@ double LineScene::room_for_images() const {
 void LineScene::add_periods(const Enclosure& enclosure) {
   constexpr double chords = 5, most_periods = 20;
   double volume = enclosure.box.volume(), area = 0, shortest = 1e300;
-  for (const double r : radius) volume -= 4.0 / 3 * pi * r * r * r;
+  for (const double r : radius) volume -= sphere_volume(r);
   for (const double a : surface_areas(enclosure)) area += a;
   for (int k = 0; k < 3; ++k)
     if (period[k] > 0) shortest = std::min(shortest, period[k]);

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "dem/base/error.h"
+#include "dem/base/morton.h"
 #include "dem/base/random.h"
 #include "raytrace/rays/hit_tally.h"
 #include "raytrace/rays/ray_monitor.h"
@@ -41,14 +42,9 @@ int replicate_count(Sampling sampling, std::size_t surfaces) {
   return static_cast<int>(std::clamp<std::size_t>(256 / surfaces, 2, 32));
 }
 
-/// The bits of three coordinates in [0, 1] taken in turns.
-std::uint64_t morton_key(const Vec3& p) {
-  std::uint64_t key = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto cell = static_cast<std::uint64_t>(p[axis] * 1023.0);
-    for (int bit = 0; bit < 10; ++bit) key |= (cell >> bit & 1u) << (3 * bit + axis);
-  }
-  return key;
+/// Of a point in the unit cube; z counts most.
+std::uint32_t morton_key(const Vec3& p) {
+  return morton_code(1023.0 * Vec3{p.z, p.y, p.x});
 }
 
 class RowTracer {

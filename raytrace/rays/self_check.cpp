@@ -13,9 +13,6 @@ namespace granrad {
 
 namespace {
 
-double sphere_volume(double r) {
-  return 4.0 / 3.0 * pi * r * r * r;
-}
 double cap_volume(double r, double height) {
   return pi * height * height * (r - height / 3);
 }
