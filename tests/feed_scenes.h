@@ -20,9 +20,8 @@ inline Material alumina() {
   return m;
 }
 
-inline  /// The paper's plug flow: alumina of 0.8 mm in the channel 10 x 4 x `height` mm at 1.59 g/s.
-    inline Scene
-    plug_scene(double solid_fraction, double height_m = 0.050) {
+/// The paper's plug flow: alumina of 0.8 mm in the channel 10 x 4 x `height` mm at 1.59 g/s.
+inline Scene plug_scene(double solid_fraction, double height_m = 0.050) {
   Scene scene;
   scene.materials = {alumina()};
   scene.box = scene.region = {{0, 0, 0}, {0.010, 0.004, height_m}};
