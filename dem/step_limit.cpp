@@ -1,6 +1,5 @@
 #include "dem/step_limit.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "dem/base/constants.h"
@@ -20,22 +19,6 @@ double hertz_time_s(const Material& m, double radius_m, double impact_speed_m_s)
   return 2.87 *
          std::pow(effective_mass * effective_mass / (effective_radius * modulus * modulus * impact_speed_m_s),
                   0.2);
-}
-
-StepLimit step_limit(const Bed& bed, double fastest_m_s) {
-  StepLimit limit;
-  for (std::size_t i = 0; i < bed.size(); ++i) fastest_m_s = std::max(fastest_m_s, norm(bed.velocity_m_s[i]));
-  std::vector<double> smallest(bed.materials.size(), infinity);
-  for (std::size_t i = 0; i < bed.size(); ++i)
-    smallest[bed.material[i]] = std::min(smallest[bed.material[i]], bed.radius_m[i]);
-  for (std::size_t k = 0; k < smallest.size(); ++k) {
-    if (!std::isfinite(smallest[k])) continue;
-    limit.rayleigh_s = std::min(limit.rayleigh_s, rayleigh_time_s(bed.materials[k], smallest[k]));
-    limit.hertz_s = std::min(limit.hertz_s, hertz_time_s(bed.materials[k], smallest[k], 2 * fastest_m_s));
-  }
-  limit.largest_step_s =
-      std::min(StepLimit::rayleigh_share * limit.rayleigh_s, StepLimit::hertz_share * limit.hertz_s);
-  return limit;
 }
 
 }  // namespace granrad

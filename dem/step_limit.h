@@ -1,7 +1,4 @@
 #pragma once
-
-#include "dem/base/constants.h"
-#include "dem/bed/bed.h"
 #include "dem/bed/material.h"
 
 namespace granrad {
@@ -14,17 +11,7 @@ double rayleigh_time_s(const Material& material, double radius_m);
 /// Infinite at rest.
 double hertz_time_s(const Material& material, double radius_m, double impact_speed_m_s);
 
-/// Limits of the DEM step of a bed.
-struct StepLimit {
-  /// Shares of the two times a step may take. The paper allows 10-30 % of Rayleigh and at most 10 % of Hertz.
-  static constexpr double rayleigh_share = 0.3, hertz_share = 0.1;
-  double rayleigh_s = infinity;      ///< smallest Rayleigh time in the bed
-  double hertz_s = infinity;         ///< smallest Hertz time, two particles meeting head-on
-  double largest_step_s = infinity;  ///< min of the two shares
-};
-
-/// Step limit of a bed whose particles move at most at the speed of its fastest, or at `fastest_m_s` if that
-/// is more (what the caller expects, e.g. the fall through the hopper). Infinite for an empty bed.
-StepLimit step_limit(const Bed& bed, double fastest_m_s = 0);
+/// Shares of the two times a step may take. The paper allows 10-30 % of Rayleigh and at most 10 % of Hertz.
+inline constexpr double rayleigh_share = 0.3, hertz_share = 0.1;
 
 }  // namespace granrad

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "coupling/granrun/profiles.h"
 #include "coupling/granrun/results.h"
+#include "coupling/granrun/run_record.h"
 #include "coupling/simulation/case_folder.h"
 #include "dem/base/error.h"
 #include "dem/io/snapshot.h"
@@ -118,13 +118,11 @@ void add_results(HtmlReport& page, const Results& results) {
 int report_case(const std::filesystem::path& where, const RunOptions& options) {
   const CaseFolder folder(where);
   const History history = read_history(folder.history());
-  const auto record = nlohmann::json::parse(read_text_file(folder.run_json()), nullptr, false);
-  if (!record.is_object()) throw IoError(fmt::format("{}: damaged", folder.run_json().string()));
-  const bool finished = record.value("finished", false);
-  HtmlReport page(record.at("scene").value("name", "case"));
-  page.paragraph(fmt::format("granrad {} ({}). Radiation: {}. {}", record.at("program").value("version", ""),
-                             record.at("program").value("git_sha", ""), record.value("radiation", ""),
-                             finished ? "Finished." : "Not finished: the state of its last frame and row."));
+  const RunRecord record = read_run_record(folder);
+  HtmlReport page(record.scene_name);
+  page.paragraph(fmt::format(
+      "granrad {} ({}). Radiation: {}. {}", record.program_version, record.git_sha, record.radiation,
+      record.finished ? "Finished." : "Not finished: the state of its last frame and row."));
   if (!history.at("time_s").empty()) {
     add_results(page, summarise(history));
     add_histories(page, history);

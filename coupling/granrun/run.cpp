@@ -4,10 +4,12 @@
 
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "coupling/granrun/results.h"
 #include "coupling/granrun/run_record.h"
 #include "coupling/simulation/case_folder.h"
+#include "coupling/simulation/case_lock.h"
 #include "coupling/simulation/simulation.h"
 #include "dem/base/error.h"
 #include "dem/base/program.h"
@@ -18,34 +20,48 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// The last frame that can be read and leads on; a damaged one is reported and passed over.
+void say(const RunOptions& options, const std::string& text) {
+  if (!options.quiet()) fmt::print(stderr, "{}\n", text);
+}
+
+/// Goes on from the last frame that can be read and leads on; a damaged one is reported, and the frame before it
+/// taken. False when the case has no frame yet. Throws IoError when it has some and none serves: its history is
+/// left as it is.
 bool resume_from_last_frame(Simulation& simulation, const CaseFolder& folder, const RunOptions& options) {
   const auto frames = folder.frames();
   for (auto frame = frames.rbegin(); frame != frames.rend(); ++frame) {
     try {
       if (!simulation.resume(read_frame(frame->file))) continue;
-      if (!options.quiet())
-        fmt::print(stderr, "resumed from {} at {:g} s\n", frame->file.string(), simulation.bed().time_s);
+      say(options, fmt::format("resumed from {} at {:g} s", frame->file.string(), simulation.bed().time_s));
       return true;
-    } catch (const IoError& error) {
-      fmt::print(stderr, "{}\n  passed over: trying the frame before\n", error.what());
+    } catch (const Error& error) {
+      fmt::print(stderr, "{}\n  skipped: trying the frame before\n", error.what());
     }
   }
-  return false;
+  if (frames.empty() && read_history(folder.history()).at("time_s").empty()) return false;
+  throw IoError(advised(fmt::format("--resume: no frame of {} can be read", folder.root().string()),
+                        "nothing was changed there; start a new folder, or put back a frame into frames/"));
 }
 
-void warn_about_motion(const Case& c, const Simulation& simulation) {
-  if (c.heat.radiation.kind != RadiationKind::none && c.heat.radiation.every_s > simulation.limits().motion_s)
-    fmt::print(stderr,
-               "note: particles move more than their diameter between radiation updates (radiation.every_s = "
-               "{:g} s); "
-               "{:.2g} s follows the flow\n",
-               c.heat.radiation.every_s, simulation.limits().motion_s);
-}
-
-void warn_about_end(const Case& c, const Simulation& simulation) {
-  const auto note = end_note(simulation.plan(), c.flow.end_time_s);
-  if (!note.empty()) fmt::print(stderr, "note: {}\n", note);
+/// Starts the case, or goes on with it.
+void begin(Simulation& simulation, const Case& c, const std::filesystem::path& where,
+           const RunOptions& options) {
+  if (options.resume && CaseFolder::holds_case(where) &&
+      resume_from_last_frame(simulation, CaseFolder(where), options)) {
+    if (simulation.plan().end_step < simulation.bed().step)
+      throw InputError(advised(fmt::format("scene.end_time_s = {:g} s (the case is at {:g} s already)",
+                                           c.flow.end_time_s, simulation.bed().time_s),
+                               "give a later end, or start a new folder"));
+  } else {
+    simulation.start();
+    const double every_s = c.heat.radiation.every_s, motion_s = simulation.limits().motion_s;
+    if (c.heat.radiation.kind != RadiationKind::none && every_s > motion_s)
+      say(options, fmt::format("note: particles move more than their diameter between radiation updates "
+                               "(radiation.every_s = {:g} s); {:.2g} s follows the flow",
+                               every_s, motion_s));
+  }
+  if (const auto note = end_note(simulation.plan(), c.flow.end_time_s); !note.empty())
+    say(options, "note: " + note);
 }
 
 std::string progress_detail(const Simulation& simulation, const HistoryRow& row) {
@@ -57,54 +73,80 @@ std::string progress_detail(const Simulation& simulation, const HistoryRow& row)
 
 void save(const Simulation& simulation, const CaseFolder& folder) {
   simulation.write_checkpoint(folder.frame(simulation.bed().step));
-  folder.write_series(simulation.plan().step_s);
+  folder.add_to_series(simulation.bed().step, simulation.bed().time_s);
 }
 
 /// 0 to go on, else the exit code to stop with.
-int stop_requested(const RunOptions& options, Clock::time_point begin) {
+int stop_requested(const RunOptions& options, Clock::time_point start) {
   if (interrupt_signal()) return 128 + interrupt_signal();
-  const double elapsed = std::chrono::duration<double>(Clock::now() - begin).count();
+  const double elapsed = std::chrono::duration<double>(Clock::now() - start).count();
   return elapsed >= options.walltime_s ? exit_wall_time : 0;
 }
 
-}  // namespace
-
-int run_case(const Case& c, const std::filesystem::path& where, const RunOptions& options) {
-  const auto begin = Clock::now();
-  install_signal_handlers();
-  CaseFolder::check(where, c, options.resume);
-  Simulation simulation(c, options.threads);
-  if (!options.resume || !std::filesystem::exists(where / "run.json") ||
-      !resume_from_last_frame(simulation, CaseFolder(where), options)) {
-    simulation.start();
-    if (!options.quiet()) warn_about_motion(c, simulation);
-  }
-  if (!options.quiet()) warn_about_end(c, simulation);
-  const CaseFolder folder = CaseFolder::prepare(where, c, options.resume);
-  write_run_record(folder, c, simulation);
-  HistoryWriter history(folder.history(), simulation.bed().time_s);
-  if (simulation.tick() == 0) save(simulation, folder);
-
+/// The time loop, from where the simulation stands to its end or until it must stop.
+int follow(Simulation& simulation, const Case& c, const CaseFolder& folder, const RunOptions& options,
+           Clock::time_point start) {
+  HistoryWriter history(folder.history(), simulation.last_row_s());
+  if (!history.note().empty()) fmt::print(stderr, "note: {}\n", history.note());
+  if (simulation.bed().step == 0) save(simulation, folder);
   const auto& plan = simulation.plan();
   Progress progress(c.flow.name, plan.time_s(plan.end_tick), options.quiet());
   HistoryRow row;
   while (!simulation.finished()) {
     if (plan.cuts(simulation.tick() + 1)) save(simulation, folder);  // where a longer run goes on
     simulation.advance();
-    if (plan.row_at(simulation.tick())) history.append(row = simulation.row());
-    const int stop = stop_requested(options, begin);
-    if (stop || plan.frame_at(simulation.tick())) save(simulation, folder);
+    if (plan.row_at(simulation.tick())) {
+      history.append(row = simulation.row());
+      if (options.verbose()) fmt::print(stderr, "{}\n", progress_detail(simulation, row));
+    }
+    const int stop = stop_requested(options, start);
+    if (stop || take_checkpoint_request() || plan.frame_at(simulation.tick())) save(simulation, folder);
     progress.update(simulation.bed().time_s, progress_detail(simulation, row));
     if (stop && !simulation.finished()) {
-      if (!options.quiet())
-        fmt::print(stderr, "stopped at {:g} s, checkpoint saved; go on with --resume\n",
-                   simulation.bed().time_s);
+      say(options,
+          fmt::format("stopped at {:g} s, checkpoint saved; go on with --resume", simulation.bed().time_s));
       return stop;
     }
   }
   progress.finish();
+  return exit_ok;
+}
+
+/// Whether a case is done as it stands: its record says so, for this end, and its history reaches it.
+bool is_done(const std::filesystem::path& where, const Case& c) {
+  if (!CaseFolder::holds_case(where) || !is_finished(where)) return false;
+  const CaseFolder folder(where);
+  const auto record = read_run_record(folder);
+  const auto& times = read_history(folder.history()).at("time_s");
+  const double rounding = 1e-9 * record.end_time_s;
+  return !times.empty() && std::abs(times.back() - record.end_time_s) <= rounding &&
+         read_case(where / "scene.toml", {}).effective_text == c.portable_text;
+}
+
+}  // namespace
+
+int run_case(const Case& c, const std::filesystem::path& where, const RunOptions& options) {
+  const auto start = Clock::now();
+  install_signal_handlers();
+  CaseFolder::check(where, c, options.resume);
+  std::optional<CaseLock> lock;
+  if (std::filesystem::exists(where)) lock.emplace(where);
+  if (options.resume && is_done(where, c)) {
+    say(options, fmt::format("{}: finished already, nothing was changed; a later scene.end_time_s goes on",
+                             where.string()));
+    return exit_ok;
+  }
+  Simulation simulation(c, options.threads);
+  begin(simulation, c, where, options);
+  if (!lock) lock.emplace(where);
+  const CaseFolder folder = CaseFolder::prepare(where, c, options.resume);
+  write_run_record(folder, c, simulation, options);
+  if (const int stop = follow(simulation, c, folder, options, start)) {
+    write_run_record(folder, c, simulation, options);
+    return stop;
+  }
   const Results results = summarise(read_history(folder.history()));
-  write_run_record(folder, c, simulation, &results);
+  write_run_record(folder, c, simulation, options, &results);
   if (!options.quiet()) print_results(c, results, simulation, folder);
   return exit_ok;
 }

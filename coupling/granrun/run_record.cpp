@@ -1,11 +1,17 @@
 #include "coupling/granrun/run_record.h"
 
 #include <fmt/core.h>
+#include <omp.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <ctime>
 #include <nlohmann/json.hpp>
 
+#include "coupling/simulation/case_lock.h"
+
 #include "coupling/simulation/radiation_source.h"
+#include "dem/base/error.h"
 #include "dem/base/program.h"
 #include "dem/base/text_file.h"
 
@@ -28,6 +34,46 @@ nlohmann::ordered_json as_json(const Results& results) {
   return json;
 }
 
+/// An empty object when there is none, or a damaged one.
+nlohmann::json parsed(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return nlohmann::json::object();
+  auto json = nlohmann::json::parse(read_text_file(file), nullptr, false);
+  return json.is_object() ? json : nlohmann::json::object();
+}
+
+std::string now_text() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32] = "";
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+/// Who computes this, where and how long, added to what runs before this one took.
+nlohmann::ordered_json process(const RunOptions& options, const nlohmann::json& before) {
+  static const std::string started = now_text();
+  const auto earlier = before.value("process", nlohmann::json::object());
+  const bool same = earlier.is_object() && earlier.contains("pid") && earlier["pid"] == getpid();
+  const auto seconds = [&](const char* key) {
+    return earlier.is_object() && earlier.contains(key) && earlier[key].is_number()
+               ? earlier[key].get<double>()
+               : 0.0;
+  };
+  const double before_s = same ? seconds("wall_seconds_before") : seconds("wall_seconds");
+  nlohmann::ordered_json json;
+  json["host"] = host_name();
+  json["pid"] = getpid();
+  json["threads"] = options.threads > 0 ? options.threads : omp_get_max_threads();
+  json["command_line"] = options.command_line;
+  json["first_started"] = earlier.is_object() ? earlier.value("first_started", started) : started;
+  json["started"] = started;
+  json["written"] = now_text();
+  json["wall_seconds_before"] = before_s;
+  json["wall_seconds"] = before_s + wall_seconds();
+  return json;
+}
+
 nlohmann::ordered_json as_json(const PartSeconds& seconds) {
   return {{"flow", seconds.flow}, {"conduction", seconds.conduction}, {"radiation", seconds.radiation}};
 }
@@ -35,12 +81,21 @@ nlohmann::ordered_json as_json(const PartSeconds& seconds) {
 }  // namespace
 
 void write_run_record(const CaseFolder& folder, const Case& c, const Simulation& simulation,
-                      const Results* results) {
+                      const RunOptions& options, const Results* results) {
+  const nlohmann::json before = parsed(folder.run_json());
   nlohmann::ordered_json json;
   json["format"] = "granrad.run";
-  json["format_version"] = 1;
-  json["program"] = {{"version", program_version()}, {"git_sha", program_git_sha()}};
-  json["scene"] = {{"name", c.flow.name}, {"hash_fnv1a64", text_hash(c.effective_text)}};
+  json["format_version"] = 2;
+  json["program"] = {{"version", program_version()},
+                     {"git_sha", program_git_sha()},
+                     {"compiler", GRANRAD_COMPILER},
+                     {"libraries", GRANRAD_LIBRARIES}};
+  json["scene"] = {{"name", c.flow.name}, {"hash_fnv1a64", fmt::format("{:016x}", text_hash(c.identity))}};
+  json["inputs"] = nlohmann::ordered_json::object();
+  for (const auto& input : c.inputs)
+    json["inputs"][input.stored_as] = {{"from", input.file.string()},
+                                       {"hash_fnv1a64", fmt::format("{:016x}", input.hash)}};
+  json["process"] = process(options, before);
   json["seeds"] = {{"feed", c.flow.feed.seed}, {"radiation", c.heat.radiation.seed}};
   json["radiation"] = describe(c.heat.radiation);
   const TimePlan& plan = simulation.plan();
@@ -54,16 +109,27 @@ void write_run_record(const CaseFolder& folder, const Case& c, const Simulation&
   write_text_file(folder.run_json(), json.dump(1) + "\n");
 }
 
-bool is_finished(const std::filesystem::path& folder) {
-  if (!std::filesystem::exists(folder / "run.json")) return false;
-  const auto json = nlohmann::json::parse(read_text_file(folder / "run.json"), nullptr, false);
-  return json.is_object() && json.value("finished", false);
+RunRecord read_run_record(const CaseFolder& folder) {
+  const auto json = parsed(folder.run_json());
+  try {
+    RunRecord record;
+    record.scene_name = json.at("scene").at("name");
+    record.program_version = json.at("program").at("version");
+    record.git_sha = json.at("program").at("git_sha");
+    record.radiation = json.at("radiation");
+    record.finished = json.at("finished");
+    record.end_time_s = json.at("steps").at("end_time_s");
+    return record;
+  } catch (const nlohmann::json::exception&) {
+    throw IoError(advised(fmt::format("{}: damaged (not a record of a run)", folder.run_json().string()),
+                          "granrun run SCENE -o DIR --resume writes it anew"));
+  }
 }
 
-std::string text_hash(const std::string& text) {
-  std::uint64_t hash = 14695981039346656037ull;
-  for (unsigned char c : text) hash = (hash ^ c) * 1099511628211ull;
-  return fmt::format("{:016x}", hash);
+bool is_finished(const std::filesystem::path& folder) {
+  const auto json = parsed(folder / "run.json");
+  const auto finished = json.find("finished");
+  return finished != json.end() && finished->is_boolean() && finished->get<bool>();
 }
 
 }  // namespace granrad

@@ -1,19 +1,30 @@
 #pragma once
+#include <string>
+
 #include "coupling/granrun/results.h"
+#include "coupling/granrun/run_options.h"
 #include "coupling/simulation/case_folder.h"
 #include "coupling/simulation/simulation.h"
 
 namespace granrad {
 
-/// run.json: where a result came from. Version, git commit, seeds, hash of the scene, steps; with `results`
-/// also `finished` and the means of summarise().
+/// What report and export need of run.json.
+struct RunRecord {
+  std::string scene_name = "case", program_version, git_sha, radiation;
+  bool finished = false;
+  double end_time_s = 0;  ///< where the run ends
+};
+
+/// run.json: where a result came from. Versions of the program and its libraries, git commit, host, threads,
+/// command line, dates, wall time, seeds, hash of the scene, steps; with `results` also `finished` and the
+/// means of summarise(). A continued run keeps the date of its first start and adds up its wall time.
 void write_run_record(const CaseFolder& folder, const Case& c, const Simulation& simulation,
-                      const Results* results = nullptr);
+                      const RunOptions& options, const Results* results = nullptr);
+
+/// Throws IoError when run.json is damaged.
+RunRecord read_run_record(const CaseFolder& folder);
 
 /// True when run.json says that the case ran to the end of this scene's time.
 bool is_finished(const std::filesystem::path& folder);
-
-/// 64-bit FNV-1a of a text, as 16 hexadecimal digits: tells scenes apart, no more.
-std::string text_hash(const std::string& text);
 
 }  // namespace granrad

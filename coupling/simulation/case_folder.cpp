@@ -1,10 +1,13 @@
 #include "coupling/simulation/case_folder.h"
 
 #include <fmt/core.h>
+
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
-#include <sstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "coupling/simulation/case_lock.h"
 
 #include "dem/base/error.h"
 #include "dem/base/text_file.h"
@@ -16,34 +19,58 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The scene without what a continued run may change.
-std::string comparable(const std::string& text) {
-  auto document = TomlDocument::from_string(text, "scene.toml");
-  document.override_value("scene.end_time_s=1");
-  return document.effective_text();
+/// A name write_text_file, a frame or its series have while they are not whole.
+bool is_temporary(const fs::path& file) {
+  return file.filename().string().find(".tmp") != std::string::npos;
+}
+
+/// What a run that was killed before its first frame may have left behind: nothing of value.
+bool holds_only_a_beginning(const fs::path& folder) {
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename();
+    if (name == CaseLock::file_name || name == "scene.toml" || name == "inputs" || is_temporary(name))
+      continue;
+    if (name == "frames" && std::all_of(fs::directory_iterator(entry.path()), fs::directory_iterator(),
+                                        [](const auto& file) { return is_temporary(file.path()); }))
+      continue;
+    return false;
+  }
+  return true;
 }
 
 void refuse_foreign_folder(const fs::path& folder) {
   if (!fs::exists(folder)) return;
   if (!fs::is_directory(folder))
-    throw InputError(fmt::format("-o {} (is a file) name a folder", folder.string()));
-  if (!fs::is_empty(folder))
-    throw InputError(
-        fs::exists(folder / "run.json")
-            ? fmt::format("-o {} (holds a case already) continue it with --resume, or name another folder",
-                          folder.string())
-            : fmt::format("-o {} (not empty, and not one of our cases) name an empty or new folder",
-                          folder.string()));
+    throw InputError(advised(fmt::format("-o {} (is a file)", folder.string()), "name a folder"));
+  if (CaseFolder::holds_case(folder))
+    throw InputError(advised(fmt::format("-o {} (holds a case already)", folder.string()),
+                             "continue it with --resume, or name another folder"));
+  if (!holds_only_a_beginning(folder))
+    throw InputError(advised(fmt::format("-o {} (not empty, and not one of our cases)", folder.string()),
+                             "name an empty or new folder"));
 }
 
 void refuse_other_scene(const CaseFolder& folder, const Case& c) {
-  if (comparable(read_text_file(folder.root() / "scene.toml")) != comparable(c.effective_text))
-    throw InputError(
-        fmt::format("--resume: the scene differs from {} (a case is continued with the scene it was "
-                    "started with; only scene.end_time_s may change) start a new folder instead; [particles] "
-                    "file = a frame of this case takes over its particles, temperatures and contacts, "
-                    "whatever the engine",
-                    (folder.root() / "scene.toml").string()));
+  const fs::path file = folder.root() / "scene.toml";
+  if (read_case(file, {}).identity == c.identity) return;
+  throw InputError(advised(
+      fmt::format(
+          "--resume: the scene differs from {} (a case is continued with the scene and the files it was "
+          "started with; only its end, its intervals and its DEM step may change)",
+          file.string()),
+      "start a new folder instead; [particles] file = a frame of this case takes over its particles, "
+      "temperatures and contacts, whatever the engine"));
+}
+
+/// Files that were being written when an earlier run was killed.
+void remove_temporaries(const fs::path& folder) {
+  std::error_code ignored;
+  for (const auto& where : {folder, folder / "frames", folder / "inputs"}) {
+    std::vector<fs::path> left;
+    for (const auto& entry : fs::directory_iterator(where, ignored))
+      if (entry.is_regular_file() && is_temporary(entry.path())) left.push_back(entry.path());
+    for (const auto& file : left) fs::remove(file, ignored);
+  }
 }
 
 void create_folders(const fs::path& folder) {
@@ -55,15 +82,18 @@ void create_folders(const fs::path& folder) {
 }  // namespace
 
 CaseFolder::CaseFolder(const fs::path& folder) : root_(folder) {
-  if (!fs::exists(root_ / "run.json") || !fs::exists(root_ / "scene.toml"))
-    throw InputError(
-        fmt::format("{} (not the folder of a case: run.json or scene.toml is missing) name the folder given "
-                    "to granrun run -o",
-                    folder.string()));
+  if (!holds_case(folder))
+    throw InputError(advised(
+        fmt::format("{} (not the folder of a case: run.json or scene.toml is missing)", folder.string()),
+        "name the folder given to granrun run -o"));
+}
+
+bool CaseFolder::holds_case(const fs::path& folder) {
+  return fs::exists(folder / "run.json") && fs::exists(folder / "scene.toml");
 }
 
 void CaseFolder::check(const fs::path& folder, const Case& c, bool resume) {
-  if (resume && fs::exists(folder / "run.json"))
+  if (resume && holds_case(folder))
     refuse_other_scene(CaseFolder(folder), c);
   else
     refuse_foreign_folder(folder);
@@ -72,7 +102,9 @@ void CaseFolder::check(const fs::path& folder, const Case& c, bool resume) {
 CaseFolder CaseFolder::prepare(const fs::path& folder, const Case& c, bool resume) {
   check(folder, c, resume);
   create_folders(folder);
-  write_text_file(folder / "scene.toml", c.effective_text);
+  remove_temporaries(folder);
+  copy_inputs(c.inputs, folder);
+  write_text_file(folder / "scene.toml", c.portable_text);
   CaseFolder prepared;
   prepared.root_ = folder;
   return prepared;
@@ -96,18 +128,24 @@ std::vector<FrameFile> CaseFolder::frames() const {
   return all;
 }
 
-void CaseFolder::write_series(double step_s) const {
-  std::vector<std::pair<fs::path, double>> times;
-  for (const auto& frame : frames()) times.emplace_back(frame.file, static_cast<double>(frame.step) * step_s);
-  granrad::write_series(root_ / "run.hdf.series", times);
-}
-
-std::string read_text_file(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::stringstream text;
-  text << in.rdbuf();
-  if (!in) throw IoError(fmt::format("{}: cannot be read", file.string()));
-  return text.str();
+void CaseFolder::add_to_series(std::int64_t step, double time_s) const {
+  const fs::path file = root_ / "run.hdf.series";
+  std::map<std::string, double> times;
+  if (fs::exists(file)) {
+    const auto known = nlohmann::json::parse(read_text_file(file), nullptr, false);
+    for (const auto& entry :
+         known.is_object() ? known.value("files", nlohmann::json::array()) : nlohmann::json())
+      if (entry.is_object() && entry.contains("name") && entry.contains("time") && entry["time"].is_number())
+        times[entry.value("name", "")] = entry["time"];
+  }
+  times["frames/" + frame(step).filename().string()] = time_s;
+  std::vector<std::pair<fs::path, double>> whole;
+  for (const auto& one : frames()) {
+    const auto name = "frames/" + one.file.filename().string();
+    const auto known = times.find(name);
+    whole.emplace_back(one.file, known != times.end() ? known->second : read_frame(one.file).bed.time_s);
+  }
+  write_series(file, whole);
 }
 
 }  // namespace granrad

@@ -43,9 +43,10 @@ void Flow::advance(Bed& bed, const TimePlan& plan, std::int64_t tick) {
   if (feed_) feed_->update(bed);
   if (!engine_) engine_ = make_engine(scene_, bed, plan.step_s, threads_);
   // Half a step early: the last step is the one at or after it, whatever rounding does.
-  engine_->advance(bed, (static_cast<double>(last_step) - 0.5) * plan.step_s);
+  engine_->advance(bed, plan.time_s(tick) - 0.5 * plan.step_s);
   if (bed.step != last_step)
     throw NumericalError(fmt::format("the engine stopped at step {} instead of {}", bed.step, last_step));
+  bed.time_s = plan.time_s(tick);
 }
 
 const NearPairs& Flow::near_pairs(const Bed& bed, double max_gap_m) {

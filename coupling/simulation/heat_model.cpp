@@ -9,6 +9,7 @@
 #include "coupling/simulation/radiation_source.h"
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
+#include "dem/io/saved_state.h"
 
 namespace granrad {
 
@@ -95,12 +96,12 @@ StateBlock HeatModel::save() const {
 }
 
 void HeatModel::load(const StateBlock& radiation, const StateBlock& ledger) {
-  radiation_.updates = radiation.integers.at("updates").at(0);
-  radiation_.rays = radiation.integers.at("rays").at(0);
-  radiation_.wall_heat_W = radiation.reals.at("wall_heat_W").at(0);
-  radiation_.missed_W = radiation.reals.at("missed_W").at(0);
-  radiation_.error_squared_W2 = radiation.reals.at("error_squared_W2").at(0);
-  radiation_.closure_correction = radiation.reals.at("closure_correction").at(0);
+  radiation_.updates = saved_integer(radiation, "updates");
+  radiation_.rays = saved_integer(radiation, "rays");
+  radiation_.wall_heat_W = saved_real(radiation, "wall_heat_W");
+  radiation_.missed_W = saved_real(radiation, "missed_W");
+  radiation_.error_squared_W2 = saved_real(radiation, "error_squared_W2");
+  radiation_.closure_correction = saved_real(radiation, "closure_correction");
   ledger_.load(ledger);
 }
 

@@ -215,6 +215,9 @@ Case read_case(const std::filesystem::path& file, const std::vector<std::string>
   result.heat = read_heat_scene(document, result.flow);
   document.finish();
   result.effective_text = document.effective_text();
+  result.inputs = input_files(document);
+  result.portable_text = portable_text(document, result.inputs);
+  result.identity = identity_text(document, result.inputs);
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "coupling/heat/conduction.h"
+#include "coupling/simulation/case_inputs.h"
 #include "dem/base/toml_reader.h"
 #include "dem/scene/scene.h"
 #include "raytrace/exchange.h"
@@ -56,7 +57,10 @@ HeatScene read_heat_scene(TomlDocument& document, const Scene& scene);
 struct Case {
   Scene flow;
   HeatScene heat;
-  std::string effective_text;  ///< the document in force, as TOML
+  std::string effective_text;     ///< the document in force, as TOML
+  std::vector<InputFile> inputs;  ///< every file it names
+  std::string portable_text;      ///< it, with its files where a case keeps their copies
+  std::string identity;           ///< what its frames depend on (see identity_text)
 };
 
 /// Reads a scene file with `overrides` ("key=value"). Throws InputError with every problem, IoError.

@@ -1,6 +1,7 @@
 #include "coupling/simulation/history.h"
 
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
@@ -9,7 +10,7 @@
 #include <limits>
 #include <sstream>
 
-#include "coupling/simulation/case_folder.h"
+#include "coupling/simulation/case_inputs.h"
 #include "dem/base/error.h"
 #include "dem/base/text_file.h"
 
@@ -88,11 +89,18 @@ const std::vector<HistoryColumn>& history_columns() {
   return columns;
 }
 
-HistoryWriter::HistoryWriter(const std::filesystem::path& file, double resume_after_s) : file_(file) {
-  std::string text = header();
-  if (resume_after_s >= 0 && std::filesystem::exists(file))
-    text += rows_up_to(read_text_file(file), resume_after_s);
-  write_text_file(file, text);
+HistoryWriter::HistoryWriter(const std::filesystem::path& file, double last_row_s) : file_(file) {
+  std::string rows;
+  if (last_row_s > 0 && std::filesystem::exists(file)) rows = rows_up_to(read_text_file(file), last_row_s);
+  const auto last_line = rows.size() < 2 ? std::string::npos : rows.rfind('\n', rows.size() - 2);
+  const double reached_s =
+      rows.empty()
+          ? 0
+          : std::strtod(rows.c_str() + (last_line == std::string::npos ? 0 : last_line + 1), nullptr);
+  if (std::abs(reached_s - last_row_s) > 1e-9 * last_row_s)
+    note_ = fmt::format("{}: its rows end at {:g} s, the run goes on at {:g} s: rows between are missing",
+                        file.string(), reached_s, last_row_s);
+  write_text_file(file, header() + rows);
 }
 
 void HistoryWriter::append(const HistoryRow& row) {
@@ -104,14 +112,15 @@ void HistoryWriter::append(const HistoryRow& row) {
   line += "\n";
   std::FILE* out = std::fopen(file_.c_str(), "ab");
   if (!out) throw IoError(fmt::format("{}: cannot be written", file_.string()));
-  const bool written = std::fwrite(line.data(), 1, line.size(), out) == line.size();
+  const bool written = std::fwrite(line.data(), 1, line.size(), out) == line.size() &&
+                       std::fflush(out) == 0 && fsync(fileno(out)) == 0;
   if (std::fclose(out) != 0 || !written) throw IoError(fmt::format("{}: cannot be written", file_.string()));
 }
 
 History read_history(const std::filesystem::path& file) {
-  std::stringstream text(read_text_file(file));
+  std::stringstream text(std::filesystem::exists(file) ? read_text_file(file) : "");
   std::string line;
-  std::getline(text, line);
+  if (!std::getline(text, line)) line = "time_s";
   const auto names = split(line);
   if (names.empty() || names.front() != "time_s")
     throw InputError(fmt::format("{} (not a history: the first column must be time_s)", file.string()));

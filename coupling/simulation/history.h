@@ -34,17 +34,19 @@ const std::vector<HistoryColumn>& history_columns();
 /// Appends rows; each row reaches the disk before the next is computed.
 class HistoryWriter {
  public:
-  /// Starts a new file, or (resume_after_s >= 0) goes on after the rows up to that time and drops later ones.
-  /// Throws IoError.
-  HistoryWriter(const std::filesystem::path& file, double resume_after_s = -1);
+  /// Starts a new file, or goes on after the rows up to `last_row_s` > 0 and drops later ones. Throws IoError.
+  explicit HistoryWriter(const std::filesystem::path& file, double last_row_s = 0);
   void append(const HistoryRow& row);
+  /// What is wrong with the rows that were there: their last is not that of `last_row_s`. Empty when nothing is.
+  const std::string& note() const { return note_; }
 
  private:
   std::filesystem::path file_;
+  std::string note_;
 };
 
-/// A history read back: columns by name, nan where a cell is empty. Throws IoError, InputError (not a
-/// history).
+/// A history read back: columns by name, nan where a cell is empty; an absent or empty file has no rows. Throws
+/// IoError, InputError (not a history).
 using History = std::map<std::string, std::vector<double>>;
 History read_history(const std::filesystem::path& file);
 

@@ -5,6 +5,7 @@
 
 #include "coupling/heat/heat_step.h"
 #include "coupling/heat/wall_coefficients.h"
+#include "dem/io/saved_state.h"
 
 namespace granrad {
 
@@ -75,7 +76,10 @@ Recorder::Mark Recorder::mark(const Bed& bed, const Flow& flow, const HeatModel&
   now.mass_in_kg = fed.mass_in_kg;
   now.mass_out_kg = fed.mass_out_kg;
   now.heat_out_J = fed.heat_out_J;
-  now.received_J = heat.ledger().received_J();
+  const HeatPaths received = heat.ledger().received_J();
+  now.solid_J = received.solid;
+  now.gas_J = received.gas;
+  now.radiation_J = received.radiation;
   now.error_squared_W2 = heat.radiation().error_squared_W2;
   now.updates = static_cast<double>(heat.radiation().updates);
   return now;
@@ -85,6 +89,19 @@ void Recorder::start(const Bed& bed) {
   before_ = {};
   before_.mean_temperature_K = mean_temperature_K(bed, in_region(bed, case_.flow.region));
 }
+
+const std::vector<Recorder::MarkColumn> Recorder::mark_columns = {
+    {"time_s", &Mark::time_s},
+    {"mean_temperature_K", &Mark::mean_temperature_K},
+    {"mass_in_kg", &Mark::mass_in_kg},
+    {"mass_out_kg", &Mark::mass_out_kg},
+    {"heat_out_J", &Mark::heat_out_J},
+    {"solid_J", &Mark::solid_J},
+    {"gas_J", &Mark::gas_J},
+    {"radiation_J", &Mark::radiation_J},
+    {"error_squared_W2", &Mark::error_squared_W2},
+    {"updates", &Mark::updates},
+};
 
 HistoryRow Recorder::row(const Bed& bed, Flow& flow, const HeatModel& heat) {
   const Mark now = mark(bed, flow, heat);
@@ -99,9 +116,9 @@ HistoryRow Recorder::row(const Bed& bed, Flow& flow, const HeatModel& heat) {
   row.mean_temperature_K = region.count > 0 ? now.mean_temperature_K : undefined;
   row.mass_flow_in_kg_s = (now.mass_in_kg - before_.mass_in_kg) / interval;
   row.mass_flow_out_kg_s = (now.mass_out_kg - before_.mass_out_kg) / interval;
-  row.Q_ss_W = (now.received_J.solid - before_.received_J.solid) / interval;
-  row.Q_sfs_W = (now.received_J.gas - before_.received_J.gas) / interval;
-  row.Q_rad_W = (now.received_J.radiation - before_.received_J.radiation) / interval;
+  row.Q_ss_W = (now.solid_J - before_.solid_J) / interval;
+  row.Q_sfs_W = (now.gas_J - before_.gas_J) / interval;
+  row.Q_rad_W = (now.radiation_J - before_.radiation_J) / interval;
   row.energy_defect = heat.ledger().relative_defect(bed, fed.heat_in_J, fed.heat_out_J);
 
   // Updates draw their own random numbers; the view factors of a frozen bed are drawn once.
@@ -126,16 +143,12 @@ HistoryRow Recorder::row(const Bed& bed, Flow& flow, const HeatModel& heat) {
 
 StateBlock Recorder::save() const {
   StateBlock block;
-  const Mark& m = before_;
-  block.reals["last_row"] = {
-      m.time_s,           m.mean_temperature_K, m.mass_in_kg,           m.mass_out_kg,      m.heat_out_J,
-      m.received_J.solid, m.received_J.gas,     m.received_J.radiation, m.error_squared_W2, m.updates};
+  for (const auto& [name, value] : mark_columns) block.reals[name] = {before_.*value};
   return block;
 }
 
 void Recorder::load(const StateBlock& block) {
-  const auto& r = block.reals.at("last_row");
-  before_ = {r.at(0), r.at(1), r.at(2), r.at(3), r.at(4), {r.at(5), r.at(6), r.at(7)}, r.at(8), r.at(9)};
+  for (const auto& [name, value] : mark_columns) before_.*value = saved_real(block, name);
 }
 
 }  // namespace granrad

@@ -8,6 +8,7 @@
 #include "coupling/heat/heat_step.h"
 #include "coupling/simulation/radiation_source.h"
 #include "dem/base/error.h"
+#include "dem/io/saved_state.h"
 
 namespace granrad {
 
@@ -27,6 +28,10 @@ class Stopwatch {
   std::chrono::steady_clock::time_point begin_;
 };
 
+std::int64_t identity(const Case& c) {
+  return static_cast<std::int64_t>(text_hash(c.identity));
+}
+
 }  // namespace
 
 Simulation::Simulation(const Case& c, int threads)
@@ -34,29 +39,33 @@ Simulation::Simulation(const Case& c, int threads)
 
 void Simulation::start(Bed bed) {
   bed_ = std::move(bed);
-  limits_ = step_limits(case_, bed_);
-  conduction_limit_s_ = conduction_step_limit_s(bed_, heat_.conduct(bed_, flow_));
-  plan_ = make_time_plan(case_, limits_, conduction_limit_s_);
+  make_plan();
   check_radiation(case_.heat.radiation, case_.flow, bed_);
-  tick_ = 0;
   heat_.start(bed_);
   recorder_.start(bed_);
 }
 
+void Simulation::make_plan() {
+  limits_ = step_limits(case_, bed_);
+  conduction_limit_s_ = conduction_step_limit_s(bed_, heat_.conduct(bed_, flow_));
+  plan_ = make_time_plan(case_, limits_, conduction_limit_s_, bed_);
+  tick_ = 0;
+}
+
 bool Simulation::resume(const Snapshot& frame) {
-  try {
-    const auto plan = TimePlan::restored(frame.state.at("plan"), case_.flow.end_time_s);
-    if (frame.bed.step % plan.steps_per_tick != 0 && frame.bed.step < plan.end_step) return false;
-    bed_ = frame.bed;
-    plan_ = plan;
-    flow_.load(frame.state.at("feed"));
-    heat_.load(frame.state.at("radiation"), frame.state.at("ledger"));
-    recorder_.load(frame.state.at("recorder"));
-  } catch (const std::out_of_range&) {
-    throw InputError(fmt::format(
-        "{} (a frame without the state of a run: it cannot be resumed) start a new case", frame.origin));
-  }
-  tick_ = bed_.step / plan_.steps_per_tick;
+  if (saved_integer(saved_block(frame, "case"), "identity") != identity(case_))
+    throw InputError(advised(fmt::format("{} (a frame of another scene)", frame.origin),
+                             "[particles] file = this frame starts a new case from it"));
+  const auto plan = TimePlan::restored(saved_block(frame, "plan"), case_.flow.end_time_s);
+  const auto tick = plan.tick_of(frame.bed.step);
+  if (!tick) return false;
+  bed_ = frame.bed;
+  flow_.load(saved_block(frame, "feed"));
+  heat_.load(saved_block(frame, "radiation"), saved_block(frame, "ledger"));
+  recorder_.load(saved_block(frame, "recorder"));
+  plan_ = plan;
+  tick_ = *tick;
+  if (!plan.serves(case_)) make_plan();
   return true;
 }
 
@@ -80,6 +89,7 @@ void Simulation::advance() {
 
 void Simulation::write_checkpoint(const std::filesystem::path& file) const {
   StateBlocks state;
+  state["case"].integers["identity"] = {identity(case_)};
   state["plan"] = plan_.save();
   state["feed"] = flow_.save();
   state["radiation"] = heat_.save();

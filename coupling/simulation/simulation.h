@@ -21,8 +21,9 @@ class Simulation {
   /// Time 0: fills the bed, checks every limit. Throws InputError with every step that is too long.
   void start() { start(flow_.first_bed()); }
   void start(Bed bed);  ///< from a bed made elsewhere
-  /// Goes on from a frame, bit for bit. False, and nothing is done, where the end of a shorter run cut the
-  /// frame's last heat step: a frame before it leads on. Throws InputError when the frame lacks something.
+  /// Goes on from a frame, bit for bit, or with other steps where the scene now asks for others. False, and
+  /// nothing is done, where the end of a shorter run cut the frame's last heat step: a frame before it leads on.
+  /// Throws InputError when the frame is of another scene or lacks something.
   bool resume(const Snapshot& frame);
 
   /// One tick: move, conduct, radiate when due, heat.
@@ -31,6 +32,8 @@ class Simulation {
   void write_checkpoint(const std::filesystem::path& file) const;
 
   bool finished() const { return bed_.step >= plan_.end_step; }
+  /// When the row before the present interval was made.
+  double last_row_s() const { return recorder_.last_row_s(); }
   std::int64_t tick() const { return tick_; }
   const Bed& bed() const { return bed_; }
   const TimePlan& plan() const { return plan_; }
@@ -43,6 +46,9 @@ class Simulation {
   const PartSeconds& seconds() const { return seconds_; }
 
  private:
+  /// Chooses the steps for the bed as it is.
+  void make_plan();
+
   const Case& case_;
   Flow flow_;
   HeatModel heat_;

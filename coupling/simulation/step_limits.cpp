@@ -77,8 +77,7 @@ StepLimits step_limits(const Case& c, const Bed& bed) {
       limits.hertz_time_s =
           std::min(limits.hertz_time_s, hertz_time_s(material, radius, limits.impact_speed_m_s));
     }
-    limits.dem_s = std::min(StepLimit::rayleigh_share * limits.rayleigh_time_s,
-                            StepLimit::hertz_share * limits.hertz_time_s);
+    limits.dem_s = std::min(rayleigh_share * limits.rayleigh_time_s, hertz_share * limits.hertz_time_s);
     const double speed = largest_speed_m_s(scene, bed);
     if (speed > 0) limits.motion_s = 2 * radius / speed;
   }

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "dem/base/constants.h"
 #include "dem/base/error.h"
+#include "dem/io/saved_state.h"
 
 namespace granrad {
 
@@ -22,13 +24,27 @@ struct Interval {
   double seconds;
 };
 
-std::vector<Interval> intervals(const Case& c) {
-  std::vector<Interval> all;
-  if (c.heat.radiation.kind != RadiationKind::none)
-    all.push_back({"radiation.every_s", c.heat.radiation.every_s});
-  all.push_back({"output.every_s", c.heat.output.every_s});
-  all.push_back({"output.frames_every_s", c.heat.output.frames_every_s});
-  return all;
+/// Everything that comes at intervals.
+struct Intervals {
+  std::optional<Interval> radiation;
+  Interval row, frame;
+
+  explicit Intervals(const Case& c)
+      : row{"output.every_s", c.heat.output.every_s},
+        frame{"output.frames_every_s", c.heat.output.frames_every_s} {
+    if (c.heat.radiation.kind != RadiationKind::none)
+      radiation = {"radiation.every_s", c.heat.radiation.every_s};
+  }
+  double shortest_s() const {
+    return std::min({radiation ? radiation->seconds : infinity, row.seconds, frame.seconds});
+  }
+};
+
+/// What the scene asks of a plan: a case whose scene asks for something else goes on with another one.
+std::vector<double> asked_of_plan(const Case& c) {
+  const Intervals every(c);
+  return {c.flow.step_s, static_cast<double>(c.heat.conduction_every_steps),
+          every.radiation ? every.radiation->seconds : 0, every.row.seconds, every.frame.seconds};
 }
 
 /// How many `unit` fit in `seconds`; 0 with a problem when not a whole number.
@@ -38,9 +54,9 @@ std::int64_t whole(const Interval& interval, double unit, const char* of_what,
   if (rounded >= 1 && std::abs(ratio - rounded) <= whole_number_tolerance * std::max(1.0, ratio))
     return static_cast<std::int64_t>(rounded);
   const double below = std::max(1.0, std::floor(ratio));
-  problems.push_back(fmt::format("{} = {:g} s (not a whole number of {} of {:.9g} s) try {:.9g} or {:.9g}",
-                                 interval.key, interval.seconds, of_what, unit, below * unit,
-                                 (below + 1) * unit));
+  problems.push_back(advised(fmt::format("{} = {:g} s (not a whole number of {} of {:.9g} s)", interval.key,
+                                         interval.seconds, of_what, unit),
+                             fmt::format("try {:.9g} or {:.9g}", below * unit, (below + 1) * unit)));
   return 0;
 }
 
@@ -59,23 +75,17 @@ double dividing_step(double seconds, double limit) {
   return seconds / (blocks * std::ceil(count / blocks));
 }
 
-double shortest(const std::vector<Interval>& all) {
-  double least = all.front().seconds;
-  for (const auto& interval : all) least = std::min(least, interval.seconds);
-  return least;
-}
-
 void refuse_beyond(std::vector<std::string>& problems, const char* key, double value, double limit,
                    const char* why) {
   if (value > limit * (1 + whole_number_tolerance))
-    problems.push_back(
-        fmt::format("{} = {:g} s ({}) the largest allowed value is {:.4g} s", key, value, why, limit));
+    problems.push_back(advised(fmt::format("{} = {:g} s ({})", key, value, why),
+                               fmt::format("the largest allowed value is {:.4g} s", limit)));
 }
 
 /// The DEM step, or the heat step of a frozen bed.
 double choose_step(const Case& c, const StepLimits& limits, double conduction_limit_s,
                    std::vector<std::string>& problems) {
-  const double base = shortest(intervals(c));
+  const double base = Intervals(c).shortest_s();
   if (c.flow.engine == EngineKind::none) return base / std::ceil(base / std::min(base, conduction_limit_s));
   if (!(c.flow.step_s > 0)) return dividing_step(base, std::min(limits.dem_s, base));
   refuse_beyond(problems, "dem.step_s", c.flow.step_s, limits.dem_s,
@@ -94,49 +104,65 @@ std::int64_t choose_steps_per_tick(const Case& c, std::int64_t divisor, double s
     return largest_divisor(divisor, static_cast<std::int64_t>(most));
   }
   if (divisor % wanted != 0)
-    problems.push_back(
+    problems.push_back(advised(
         fmt::format("conduction.every_steps = {} (radiation, rows and frames come every multiple of {} "
-                    "steps, which it does not divide) try {}",
-                    wanted, divisor, largest_divisor(divisor, wanted)));
+                    "steps, which it does not divide)",
+                    wanted, divisor),
+        fmt::format("try {}", largest_divisor(divisor, wanted))));
   refuse_beyond(problems, "conduction.every_steps * dem.step_s", static_cast<double>(wanted) * step_s,
                 conduction_limit_s, "0.1 of the shortest conduction time constant");
   return wanted;
 }
 
 void end_at(TimePlan& plan, double end_time_s) {
-  plan.end_step = std::max<std::int64_t>(1, std::llround(end_time_s / plan.step_s));
-  plan.end_tick = (plan.end_step + plan.steps_per_tick - 1) / plan.steps_per_tick;
+  const auto steps = std::max<std::int64_t>(1, std::llround((end_time_s - plan.origin_s) / plan.step_s));
+  plan.end_step = plan.origin_step + steps;
+  plan.end_tick = (steps + plan.steps_per_tick - 1) / plan.steps_per_tick;
 }
 
 }  // namespace
 
-TimePlan make_time_plan(const Case& c, const StepLimits& limits, double conduction_limit_s) {
+TimePlan make_time_plan(const Case& c, const StepLimits& limits, double conduction_limit_s, const Bed& bed) {
   std::vector<std::string> problems;
   if (c.heat.radiation.kind != RadiationKind::none)
     refuse_beyond(problems, "radiation.every_s", c.heat.radiation.every_s, limits.radiation_s,
                   "0.1 of the radiative time constant of the smallest particle at the hottest temperature");
+  const bool frozen = c.flow.engine == EngineKind::none;
   TimePlan plan;
+  plan.asked = asked_of_plan(c);
   plan.step_s = choose_step(c, limits, conduction_limit_s, problems);
-  std::int64_t divisor = 0;
-  std::vector<std::int64_t> steps;
-  for (const auto& interval : intervals(c)) {
-    steps.push_back(whole(interval, plan.step_s,
-                          c.flow.engine == EngineKind::none ? "heat steps" : "DEM steps", problems));
-    divisor = std::gcd(divisor, steps.back());
-  }
+  const Intervals every(c);
+  const auto steps_of = [&](const Interval& interval) {
+    return whole(interval, plan.step_s, frozen ? "heat steps" : "DEM steps", problems);
+  };
+  const std::int64_t radiation = every.radiation ? steps_of(*every.radiation) : 0;
+  const std::int64_t row = steps_of(every.row), frame = steps_of(every.frame);
+  const std::int64_t divisor = std::gcd(radiation, std::gcd(row, frame));
   plan.steps_per_tick = choose_steps_per_tick(c, divisor, plan.step_s, conduction_limit_s, problems);
   if (!problems.empty()) throw InputError(problems);
 
-  plan.ticks_per_frame = steps.back() / plan.steps_per_tick;
-  plan.ticks_per_row = steps[steps.size() - 2] / plan.steps_per_tick;
-  if (steps.size() == 3) plan.ticks_per_radiation = steps.front() / plan.steps_per_tick;
-  if (c.flow.engine == EngineKind::none) {
+  plan.ticks_per_radiation = radiation / plan.steps_per_tick;
+  plan.ticks_per_row = row / plan.steps_per_tick;
+  plan.ticks_per_frame = frame / plan.steps_per_tick;
+  if (frozen) {
     plan.steps_per_tick = parts_of_a_frozen_tick;
     plan.step_s /= static_cast<double>(parts_of_a_frozen_tick);
   }
   plan.tick_s = static_cast<double>(plan.steps_per_tick) * plan.step_s;
+  plan.origin_step = bed.step;
+  plan.origin_s = bed.time_s;
   end_at(plan, c.flow.end_time_s);
   return plan;
+}
+
+bool TimePlan::serves(const Case& c) const {
+  return asked == asked_of_plan(c);
+}
+
+std::optional<std::int64_t> TimePlan::tick_of(std::int64_t step) const {
+  const std::int64_t steps = step - origin_step;
+  if (steps % steps_per_tick == 0) return steps / steps_per_tick;
+  return step >= end_step ? std::optional(end_tick) : std::nullopt;
 }
 
 std::string end_note(const TimePlan& plan, double end_time_s) {
@@ -150,21 +176,31 @@ std::string end_note(const TimePlan& plan, double end_time_s) {
 
 StateBlock TimePlan::save() const {
   StateBlock block;
-  block.reals["step_s"] = {step_s};
+  block.integers["origin_step"] = {origin_step};
   block.integers["steps_per_tick"] = {steps_per_tick};
-  block.integers["ticks_per"] = {ticks_per_radiation, ticks_per_row, ticks_per_frame};
+  block.integers["ticks_per_radiation"] = {ticks_per_radiation};
+  block.integers["ticks_per_row"] = {ticks_per_row};
+  block.integers["ticks_per_frame"] = {ticks_per_frame};
+  block.reals["origin_s"] = {origin_s};
+  block.reals["step_s"] = {step_s};
+  block.reals["asked"] = asked;
   return block;
 }
 
 TimePlan TimePlan::restored(const StateBlock& block, double end_time_s) {
   TimePlan plan;
-  plan.step_s = block.reals.at("step_s").at(0);
-  plan.steps_per_tick = block.integers.at("steps_per_tick").at(0);
+  plan.origin_step = saved_integer(block, "origin_step");
+  plan.steps_per_tick = saved_integer(block, "steps_per_tick");
+  plan.ticks_per_radiation = saved_integer(block, "ticks_per_radiation");
+  plan.ticks_per_row = saved_integer(block, "ticks_per_row");
+  plan.ticks_per_frame = saved_integer(block, "ticks_per_frame");
+  plan.origin_s = saved_real(block, "origin_s");
+  plan.step_s = saved_real(block, "step_s");
+  plan.asked = saved_reals(block, "asked");
+  if (!(plan.step_s > 0) || plan.steps_per_tick < 1 || plan.ticks_per_row < 1 || plan.ticks_per_frame < 1 ||
+      plan.ticks_per_radiation < 0)
+    throw InputError("the plan of the run is damaged");
   plan.tick_s = static_cast<double>(plan.steps_per_tick) * plan.step_s;
-  const auto& ticks_per = block.integers.at("ticks_per");
-  plan.ticks_per_radiation = ticks_per.at(0);
-  plan.ticks_per_row = ticks_per.at(1);
-  plan.ticks_per_frame = ticks_per.at(2);
   end_at(plan, end_time_s);
   return plan;
 }

@@ -1,12 +1,14 @@
 #include "dem/base/program.h"
 
 #include <fmt/core.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 
 #include "dem/base/error.h"
@@ -21,6 +23,12 @@ void remember_signal(int signal) {
   if (received_signal.exchange(signal) != 0) _exit(128 + signal);
 }
 
+std::atomic<bool> checkpoint_wanted{false};
+
+void remember_checkpoint(int) {
+  checkpoint_wanted = true;
+}
+
 double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -33,6 +41,10 @@ std::string duration_text(double seconds) {
 }
 
 }  // namespace
+
+namespace {
+const double started_s = now_s();
+}
 
 int run_program(const std::string& name, const std::function<int()>& body) {
   try {
@@ -53,10 +65,43 @@ int run_program(const std::string& name, const std::function<int()>& body) {
 void install_signal_handlers() {
   std::signal(SIGINT, remember_signal);
   std::signal(SIGTERM, remember_signal);
+  if (std::signal(SIGHUP, remember_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+  std::signal(SIGUSR1, remember_checkpoint);
+}
+
+bool take_checkpoint_request() {
+  return checkpoint_wanted.exchange(false);
 }
 
 int interrupt_signal() {
   return received_signal;
+}
+
+std::string resources_used() {
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return fmt::format("{:.2f} s of computing on all threads, {:.2f} s by the clock, {:.0f} MB at most",
+                     seconds(used.ru_utime) + seconds(used.ru_stime), now_s() - started_s,
+                     static_cast<double>(used.ru_maxrss) / 1024);
+}
+
+double wall_seconds() {
+  return now_s() - started_s;
+}
+
+void refuse_several_ranks() {
+  for (const char* variable : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MPI_LOCALNRANKS"}) {
+    const char* text = std::getenv(variable);
+    if (text && std::atoi(text) > 1)
+      throw InputError(
+          advised(fmt::format("started {} times by mpirun ({} = {}): each copy would compute the "
+                              "same case",
+                              text, variable, text),
+                  "start it once, without mpirun or with -n 1; --threads uses the cores of a node"));
+  }
 }
 
 Progress::Progress(std::string what, double total, bool quiet)

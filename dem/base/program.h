@@ -4,19 +4,33 @@
 
 namespace granrad {
 
+/// How much a command says: results and errors; also progress and notes; also what each part does.
+enum class Verbosity { quiet, normal, verbose };
+
 /// Version and git commit this binary was built from.
 const char* program_version();
 const char* program_git_sha();
 
 /// Runs a program's body and turns its errors into messages on stderr and the exit codes of error.h;
-/// an interrupt caught by `install_signal_handlers` ends as 130 (SIGINT) or 143 (SIGTERM).
+/// an interrupt caught by `install_signal_handlers` ends as 128 + its number: 129 (SIGHUP), 130 (SIGINT), 143
+/// (SIGTERM).
 int run_program(const std::string& name, const std::function<int()>& body);
 
-/// After this, SIGINT and SIGTERM only set a flag; the time loop looks at it, saves and returns.
-/// A second signal ends the process at once.
+/// After this, SIGINT, SIGTERM and SIGHUP (unless it is ignored, as under nohup) only set a flag; the time loop
+/// looks at it, saves and returns. A second signal ends the process at once. SIGUSR1 asks for a checkpoint.
 void install_signal_handlers();
 /// 0, or the signal number received.
 int interrupt_signal();
+/// Whether a SIGUSR1 came since it was last asked.
+bool take_checkpoint_request();
+
+/// "12.3 s of computing on all threads, 4.5 s by the clock, 120 MB at most": of this process so far.
+std::string resources_used();
+double wall_seconds();  ///< by the clock, since this process started
+
+/// Throws InputError where a launcher of MPI started several copies of this program, none of which knows of the
+/// others.
+void refuse_several_ranks();
 
 /// Progress with ETA on stderr: a line that rewrites itself on a terminal, else a line every 30 s or so.
 /// Quiet prints nothing. Costs a clock read per call.

@@ -69,9 +69,12 @@ fs::path TomlDocument::folder() const {
   return state_->folder;
 }
 
-std::string TomlDocument::effective_text() const {
+std::string TomlDocument::effective_text(const std::map<std::string, std::string>& texts) const {
+  toml::table shown = state_->root;
+  for (const auto& [path, text] : texts)
+    if (toml::node* node = state_->find(path, &shown); node && node->is_string()) *node->as_string() = text;
   std::ostringstream out;
-  out << toml::toml_formatter(state_->root) << '\n';
+  out << toml::toml_formatter(shown) << '\n';
   return with_shortest_numbers(out.str());
 }
 
@@ -130,6 +133,10 @@ std::string TomlDocument::text_with_defaults() const {
     text += fallback ? fmt::format("{}# {}\n", line.substr(0, start), bare) : line + '\n';
   }
   return text;
+}
+
+const std::map<std::string, fs::path>& TomlDocument::files() const {
+  return state_->files;
 }
 
 /// Follows "walls.y_min" or "polygon[2].role" from a table; null where it ends early.

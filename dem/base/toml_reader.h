@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -43,7 +44,11 @@ class TomlDocument {
   /// Throws InputError if anything was recorded or any key stayed unread.
   void finish();
   /// The document as it is in force (with overrides), as TOML text.
-  std::string effective_text() const;
+  std::string effective_text() const { return effective_text({}); }
+  /// The same with other texts at some keys: by path ("mesh[0].file").
+  std::string effective_text(const std::map<std::string, std::string>& texts) const;
+  /// Every file named so far, by the path of its key, as it was found on disk.
+  const std::map<std::string, std::filesystem::path>& files() const;
   /// The same, with every default that was used as a comment: `# restitution = 0.8`.
   std::string text_with_defaults() const;
   /// Every reading of a key so far, in order.

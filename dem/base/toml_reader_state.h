@@ -2,6 +2,7 @@
 // The inside of toml_reader.h, for its own .cpp files alone.
 #include <toml++/toml.h>
 
+#include <filesystem>
 #include <map>
 #include <set>
 
@@ -29,6 +30,7 @@ struct TomlDocument::State {
   ProblemList problems;
   std::map<std::string, std::set<std::string>> known, read;      ///< keys asked for, by table path
   std::map<std::string, std::vector<std::string>> absent_needs;  ///< keys required of tables that are absent
+  std::map<std::string, std::filesystem::path> files;            ///< named and found, by path of the key
   std::set<std::string> troubled;                                ///< paths that have a problem of their own
   std::vector<KeyUse> uses;                                      ///< every reading, in order
   const Exploration* exploring = nullptr;                        ///< no file: answers are made up

@@ -170,8 +170,10 @@ fs::path TomlTable::file(const Key& key, bool required) {
     return {};
   }
   const fs::path beside = (node_->state->folder / name->get()).lexically_normal();
-  if (fs::is_regular_file(beside)) return beside;
-  if (const fs::path installed = installed_file(name->get()); !installed.empty()) return installed;
+  fs::path& found = node_->state->files[node_->path_of(key.name)];
+  found = fs::is_regular_file(beside) ? beside : installed_file(name->get());
+  if (!found.empty()) return found;
+  node_->state->files.erase(node_->path_of(key.name));
   node_->state->add_at(*node, node_->path_of(key.name), fmt::format("no such file: {}", beside.string()));
   return {};
 }

@@ -5,6 +5,7 @@
 #include "dem/base/constants.h"
 #include "dem/feed/hopper_feed.h"
 #include "dem/feed/plug_feed.h"
+#include "dem/io/saved_state.h"
 
 namespace granrad {
 
@@ -94,16 +95,28 @@ const FeedTotals& Feed::totals() const {
 StateBlock Feed::save() const {
   const FeedTotals& t = impl_->totals;
   StateBlock state;
-  state.reals["totals"] = {t.mass_in_kg, t.mass_out_kg, t.heat_in_J, t.heat_out_J};
-  state.integers["counts"] = {t.inserted, t.removed, t.nudged, t.waiting};
+  state.reals["mass_in_kg"] = {t.mass_in_kg};
+  state.reals["mass_out_kg"] = {t.mass_out_kg};
+  state.reals["heat_in_J"] = {t.heat_in_J};
+  state.reals["heat_out_J"] = {t.heat_out_J};
+  state.integers["inserted"] = {t.inserted};
+  state.integers["removed"] = {t.removed};
+  state.integers["nudged"] = {t.nudged};
+  state.integers["waiting"] = {t.waiting};
   std::visit([&](const auto& feed) { feed.save(state); }, impl_->feed);
   return state;
 }
 
 void Feed::load(const StateBlock& state) {
-  const auto& reals = state.reals.at("totals");
-  const auto& counts = state.integers.at("counts");
-  impl_->totals = {reals[0], reals[1], reals[2], reals[3], counts[0], counts[1], counts[2], counts[3]};
+  FeedTotals& t = impl_->totals;
+  t.mass_in_kg = saved_real(state, "mass_in_kg");
+  t.mass_out_kg = saved_real(state, "mass_out_kg");
+  t.heat_in_J = saved_real(state, "heat_in_J");
+  t.heat_out_J = saved_real(state, "heat_out_J");
+  t.inserted = saved_integer(state, "inserted");
+  t.removed = saved_integer(state, "removed");
+  t.nudged = saved_integer(state, "nudged");
+  t.waiting = saved_integer(state, "waiting");
   std::visit([&](auto& feed) { feed.load(state); }, impl_->feed);
 }
 

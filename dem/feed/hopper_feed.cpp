@@ -8,6 +8,7 @@
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
 #include "dem/base/random.h"
+#include "dem/io/saved_state.h"
 #include "dem/packing/packing.h"
 
 namespace granrad {
@@ -106,7 +107,7 @@ void HopperFeed::save(StateBlock& state) const {
 }
 
 void HopperFeed::load(const StateBlock& state) {
-  start_s_ = state.reals.at("hopper_start_s")[0];
+  start_s_ = saved_real(state, "hopper_start_s");
 }
 
 }  // namespace granrad

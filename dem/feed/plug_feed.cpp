@@ -8,6 +8,7 @@
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
 #include "dem/base/random.h"
+#include "dem/io/saved_state.h"
 #include "dem/packing/packing_shake.h"
 
 namespace granrad {
@@ -264,22 +265,32 @@ void PlugFeed::reflect_above_channel(Bed& bed) const {
 }
 
 void PlugFeed::save(StateBlock& state) const {
-  state.integers["plug_counters"] = {half_periods_, tries_, measured_};
-  auto& reals = state.reals["plug_tape"];
-  reals = {start_s_, used_m_, faster_, measured_sum_};
-  for (const Vec3& p : column_) reals.insert(reals.end(), {p.x, p.y, p.z});
+  state.integers["half_periods"] = {half_periods_};
+  state.integers["tries"] = {tries_};
+  state.integers["measured"] = {measured_};
+  state.reals["tape_start_s"] = {start_s_};
+  state.reals["tape_used_m"] = {used_m_};
+  state.reals["faster"] = {faster_};
+  state.reals["measured_sum"] = {measured_sum_};
+  auto& column = state.reals["tape_m"];
+  for (const Vec3& p : column_) column.insert(column.end(), {p.x, p.y, p.z});
 }
 
 void PlugFeed::load(const StateBlock& state) {
-  const auto& counters = state.integers.at("plug_counters");
-  const auto& reals = state.reals.at("plug_tape");
-  if (reals.size() != 4 + 3 * column_.size())
+  half_periods_ = saved_integer(state, "half_periods");
+  tries_ = saved_integer(state, "tries");
+  measured_ = saved_integer(state, "measured");
+  start_s_ = saved_real(state, "tape_start_s");
+  used_m_ = saved_real(state, "tape_used_m");
+  faster_ = saved_real(state, "faster");
+  measured_sum_ = saved_real(state, "measured_sum");
+  const auto& column = saved_reals(state, "tape_m");
+  if (column.size() != 3 * column_.size())
     throw InputError(
-        "checkpoint: plug feed state of another scene (number of particles on the tape differs)");
-  half_periods_ = counters[0], tries_ = counters[1], measured_ = counters[2];
-  start_s_ = reals[0], used_m_ = reals[1], faster_ = reals[2], measured_sum_ = reals[3];
+        advised("checkpoint: plug feed state of another scene (number of particles on the tape differs)",
+                "start a new case"));
   for (std::size_t i = 0; i < column_.size(); ++i)
-    column_[i] = {reals[4 + 3 * i], reals[5 + 3 * i], reals[6 + 3 * i]};
+    column_[i] = {column[3 * i], column[3 * i + 1], column[3 * i + 2]};
 }
 
 }  // namespace granrad

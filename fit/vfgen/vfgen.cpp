@@ -156,7 +156,7 @@ int run(int argc, char** argv) {
   app.fallthrough();
   bool quiet = false, verbose = false;
   auto* q = app.add_flag("-q,--quiet", quiet, "only results and errors");
-  app.add_flag("-v,--verbose", verbose, "say more")->excludes(q);
+  app.add_flag("-v,--verbose", verbose, "also say how long it took and how much memory")->excludes(q);
   Body body;
   add_trace(app, body);
   add_fit(app, body);
@@ -169,7 +169,9 @@ int run(int argc, char** argv) {
   }
   return run_program("vfgen", [&] {
     install_signal_handlers();
-    return body({quiet ? -1 : verbose ? 1 : 0});
+    const int code = body(quiet ? Verbosity::quiet : verbose ? Verbosity::verbose : Verbosity::normal);
+    if (verbose) fmt::print(stderr, "vfgen: {}\n", resources_used());
+    return code;
   });
 }
 

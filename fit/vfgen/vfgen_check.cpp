@@ -13,7 +13,7 @@ int run_check(const std::filesystem::path& table, Verbosity verbosity) {
   std::size_t problems = 0;
   for (const auto& finding : findings) {
     if (finding.problem) ++problems;
-    if (finding.problem || !verbosity.quiet())
+    if (finding.problem || verbosity != Verbosity::quiet)
       fmt::print("{} {}\n", finding.problem ? "problem" : "note   ", finding.text);
   }
   fmt::print("{}: {}\n", table.string(), problems == 0 ? "sound" : fmt::format("{} problems", problems));

@@ -3,16 +3,11 @@
 #include <string>
 #include <vector>
 
+#include "dem/base/program.h"
 #include "fit/fitting/fit_correlation.h"
 #include "fit/vfgen/trace_snapshot.h"
 
 namespace granrad {
-
-/// How much a command says: -1 quiet (errors and results only), 0, 1 verbose.
-struct Verbosity {
-  int level = 0;
-  bool quiet() const { return level < 0; }
-};
 
 /// vfgen trace: snapshots -> view factors. One snapshot is written to `output`; of several, snapshot k to
 /// output's name with _0001, _0002 ... before the extension.

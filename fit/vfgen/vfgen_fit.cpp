@@ -37,15 +37,15 @@ std::string joined(const std::vector<std::filesystem::path>& files) {
 }  // namespace
 
 int run_fit(const FitCommand& command, Verbosity verbosity) {
-  const auto groups = grouped_by_solid_fraction(read_samples(command, verbosity.quiet()));
+  const auto groups = grouped_by_solid_fraction(read_samples(command, verbosity == Verbosity::quiet));
   std::vector<RowFit> rows;
-  if (!verbosity.quiet())
+  if (verbosity != Verbosity::quiet)
     fmt::print("{:>14} {:>9} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "solid fraction", "snapshots",
                "pp RMSE", "scatter", "held out", "pw RMSE", "scatter", "row sum-1");
   for (const auto& group : groups) {
     rows.push_back(fit_row(group, command.options));
     const auto& row = rows.back();
-    if (!verbosity.quiet())
+    if (verbosity != Verbosity::quiet)
       fmt::print("{:14.4f} {:9} {:10.3e} {:10.3e} {:10.3e} {:10.3e} {:10.3e} {:+10.4f}\n",
                  row.row.solid_fraction, group.size(), row.pp.rmse, row.pp.scatter, row.pp.held_out_rmse,
                  row.pw.rmse, row.pw.scatter, row.row.statistics.closure_mean);
@@ -61,7 +61,7 @@ int run_fit(const FitCommand& command, Verbosity verbosity) {
       {"created_by", fmt::format("vfgen {} ({})", program_version(), program_git_sha())}};
   write_correlation(command.output, table);
   if (!command.report.empty()) write_fit_report(command.report, table, rows);
-  if (!verbosity.quiet())
+  if (verbosity != Verbosity::quiet)
     fmt::print("{}{}\n", command.output.string(),
                command.report.empty() ? "" : fmt::format(", report in {}", command.report.string()));
   return exit_ok;

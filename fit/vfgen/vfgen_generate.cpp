@@ -99,9 +99,9 @@ int run_generate(const GenerateCommand& command, Verbosity verbosity) {
       throw IoError(
           fmt::format("{}: cannot be made ({})", (command.folder / part).string(), failure.message()));
   }
-  const auto files = trace_all(settings, command.folder, verbosity.quiet());
+  const auto files = trace_all(settings, command.folder, verbosity == Verbosity::quiet);
   if (interrupt_signal()) return exit_ok;  // run_program turns the signal into the exit code
-  fit_all(settings, command.folder, files, verbosity.quiet());
+  fit_all(settings, command.folder, files, verbosity == Verbosity::quiet);
   return exit_ok;
 }
 

@@ -82,11 +82,12 @@ int run_trace(const TraceCommand& command, Verbosity verbosity) {
       fmt::print(stderr, "{}: {} particles with their centre outside the box were left out\n",
                  snapshot.string(), read.left_out);
     if (!read.overlaps.empty()) fmt::print(stderr, "{}\n", read.overlaps);
-    if (!read.meshes.empty() && !verbosity.quiet()) fmt::print(stderr, "{}\n", read.meshes);
-    const auto traced = trace_shown(read.enclosure, command.trace, snapshot.string(), verbosity.quiet());
+    if (!read.meshes.empty() && verbosity != Verbosity::quiet) fmt::print(stderr, "{}\n", read.meshes);
+    const auto traced =
+        trace_shown(read.enclosure, command.trace, snapshot.string(), verbosity == Verbosity::quiet);
     const auto file = numbered(command.output, k + 1, command.snapshots.size());
     write_view_factors(file, traced);
-    if (!verbosity.quiet())
+    if (verbosity != Verbosity::quiet)
       fmt::print("{}: {} spheres, {} walls; {}\n  {}\n", file.string(), read.enclosure.sphere_count(),
                  read.enclosure.walls.size(), self_check_line(traced.check), spent_line(traced));
     if (!traced.check.failed.empty()) failures += fmt::format("\n{}: {}", file.string(), traced.check.failed);

@@ -30,17 +30,5 @@ TEST(StepLimit, hertz_time_falls_with_the_fifth_root_of_speed) {
               1, 1e-12);
 }
 
-TEST(StepLimit, bed_takes_the_smallest_of_its_particles) {
-  Bed bed;
-  bed.materials = {alumina()};
-  EXPECT_GT(step_limit(bed).largest_step_s, 1e300);
-  bed.add({}, {0, 0, -0.01}, 4e-4, 300);  // slow: Rayleigh rules
-  EXPECT_NEAR(step_limit(bed).largest_step_s, 0.3 * rayleigh_time_s(alumina(), 4e-4), 1e-12);
-  EXPECT_GE(step_limit(bed, 1).largest_step_s, 1e-5);
-  bed.add({}, {}, 2e-4, 300);
-  EXPECT_NEAR(step_limit(bed).rayleigh_s, 3.04e-5, 5e-8);
-  EXPECT_LT(step_limit(bed, 100).largest_step_s, step_limit(bed).largest_step_s);
-}
-
 }  // namespace
 }  // namespace granrad
