@@ -33,48 +33,34 @@ ExchangeAreas one_way_estimate(const HitCounts& counts) {
   return estimate;
 }
 
-ExchangeAreas drop_surfaces(const ExchangeAreas& estimate, const std::vector<char>& dropped) {
-  ExchangeAreas kept;
-  kept.area_m2 = estimate.area_m2;
-  kept.rays_per_m2 = estimate.rays_per_m2;
-  kept.pattern.row_begin.push_back(0);
-  for (std::size_t i = 0; i < dropped.size(); ++i) {
-    if (dropped[i]) kept.area_m2[i] = 0;
-    for (std::int64_t k = estimate.pattern.row_begin[i]; k < estimate.pattern.row_begin[i + 1]; ++k) {
-      const std::int32_t j = estimate.pattern.column[k];
-      if (dropped[i] || dropped[static_cast<std::size_t>(j)]) continue;
-      kept.pattern.column.push_back(j);
-      kept.value.push_back(estimate.value[k]);
-      if (!estimate.variance.empty()) kept.variance.push_back(estimate.variance[k]);
+ExchangeAreas restricted(const ExchangeAreas& all, const std::vector<std::int32_t>& kept) {
+  if (kept.size() == all.area_m2.size()) return all;
+  std::vector<std::int32_t> number(all.area_m2.size(), -1);
+  for (std::size_t k = 0; k < kept.size(); ++k) number[kept[k]] = static_cast<std::int32_t>(k);
+  ExchangeAreas part;
+  part.pattern.row_begin = {0};
+  for (const auto s : kept) {
+    for (auto k = all.pattern.row_begin[s]; k < all.pattern.row_begin[s + 1]; ++k) {
+      const auto column = number[all.pattern.column[k]];
+      if (column < 0) continue;
+      part.pattern.column.push_back(column);
+      part.value.push_back(all.value[k]);
+      if (!all.variance.empty()) part.variance.push_back(all.variance[k]);
     }
-    kept.pattern.row_begin.push_back(static_cast<std::int64_t>(kept.pattern.column.size()));
+    part.pattern.row_begin.push_back(static_cast<std::int64_t>(part.pattern.column.size()));
+    part.area_m2.push_back(all.area_m2[s]);
+    if (!all.rays_per_m2.empty()) part.rays_per_m2.push_back(all.rays_per_m2[s]);
   }
-  return kept;
+  return part;
 }
-
-namespace {
-
-/// Hits expected on a pair that has still 1 % to be found without any.
-double expected_hits_at_bound(const HitCounts& counts) {
-  const double thinned = counts.thinning_unit > 1 ? 2 * static_cast<double>(counts.thinning_unit) : 0;
-  return -std::log(0.01) + thinned;
-}
-
-}  // namespace
 
 std::vector<double> zero_hit_bound(const HitCounts& counts) {
-  const double expected = expected_hits_at_bound(counts);
+  const double thinned = counts.thinning_unit > 1 ? 2 * static_cast<double>(counts.thinning_unit) : 0;
+  const double expected = -std::log(0.01) + thinned;
   std::vector<double> bound;
   for (const std::int64_t n : counts.launched)
     bound.push_back(n > 0 ? std::min(1.0, expected / static_cast<double>(n)) : 1);
   return bound;
-}
-
-double zero_hit_bound_m2(const HitCounts& counts, std::size_t i, std::size_t j) {
-  const auto density = [&](std::size_t s) {
-    return counts.area_m2[s] > 0 ? static_cast<double>(counts.launched[s]) / counts.area_m2[s] : 0;
-  };
-  return expected_hits_at_bound(counts) / (density(i) + density(j));
 }
 
 SparsePattern symmetrized(const SparsePattern& pattern) {

@@ -84,18 +84,14 @@ ExchangeAreas one_way_estimate(const HitCounts& counts);
 /// it).
 ExchangeAreas close(const ExchangeAreas& estimate, Closure closure, ClosureReport& report);
 
-/// The estimate without the surfaces marked in `dropped` (walls with role `excluded`): what they exchanged is
-/// lost from the rows of the others, and their area becomes 0. To be called before closure.
-ExchangeAreas drop_surfaces(const ExchangeAreas& estimate, const std::vector<char>& dropped);
+/// Rows and columns of the surfaces in `kept` (ascending), renumbered: what the others (excluded walls) exchanged
+/// is lost from the rows. To be called before closure.
+ExchangeAreas restricted(const ExchangeAreas& all, const std::vector<std::int32_t>& kept);
 
 /// 99 % upper bound of F_ij of a surface that no ray of its own hit j with: b_i = m / n_i, at most 1, where m
 /// = -ln 0.01 (Poisson), and 2 thinning_unit more where rare pairs were thinned out. 1 for surfaces without
 /// rays.
 std::vector<double> zero_hit_bound(const HitCounts& counts);
-
-/// 99 % upper bound of X_ij of a pair hit from neither end, by the rays of both: m / (n_i / A_i + n_j / A_j);
-/// as F_ij it is 1 / (1 / b_i + (A_i / A_j) / b_j) where both send rays.
-double zero_hit_bound_m2(const HitCounts& counts, std::size_t i, std::size_t j);
 
 /// Reduced chi^2 of X_ij - X_ji over the pairs both of whose ends sent rays; 0 when there are none.
 double reciprocity_chi2(const ExchangeAreas& one_way);

@@ -3,22 +3,34 @@
 #include <string>
 #include <vector>
 
+#include "dem/base/constants.h"
 #include "raytrace/enclosure.h"
 
 namespace granrad {
 
-/// Radiative state of every surface of an enclosure, by surface number.
+/// Radiative state of every surface of an enclosure, by surface number: all a source knows of a surface. What a
+/// wall's role means is worked out once, by `add`. Of a second spectral band the state holds that band's
+/// emissive powers and emissivities; the heats of the bands add up.
 struct RadiativeState {
-  std::vector<double> temperature_K;
-  std::vector<double> emissivity;  ///< (0, 1]; surroundings 1
-  std::vector<WallRole> role;      ///< particles are isothermal
+  std::vector<double> emissive_power_W_m2;  ///< sigma T^4
+  std::vector<double> emissivity;           ///< [0, 1]; 0: re-radiates what meets it, 1: black
+  std::vector<char> excluded;               ///< walls that are dropped before closure
+
+  /// The next surface. Adiabatic walls have emissivity 0, open walls and the surroundings 1.
+  void add(double temperature_K, double surface_emissivity, WallRole role = WallRole::isothermal) {
+    emissive_power_W_m2.push_back(emissive_power(temperature_K));
+    emissivity.push_back(role == WallRole::adiabatic ? 0 : role == WallRole::open ? 1 : surface_emissivity);
+    excluded.push_back(role == WallRole::excluded);
+  }
+  /// Whether the surface emits and absorbs.
+  bool radiates(std::size_t surface) const { return emissivity[surface] > 0 && !excluded[surface]; }
 };
 
 /// Net radiative heat received by every surface.
 struct RadiativeHeat {
   std::vector<double> heat_W;               ///< by surface number; sums to 0 within round-off
   std::vector<double> standard_error_W;     ///< same shape; empty when the source cannot estimate it
-  double isothermal_wall_heat_W = 0;        ///< given by the isothermal and open walls to the particles
+  double isothermal_wall_heat_W = 0;        ///< given by the walls that radiate to the particles
   double isothermal_wall_heat_error_W = 0;  ///< its standard error
   std::int64_t rays = 0;                    ///< traced for this update
   double closure_correction = 0;            ///< largest row correction, 0 when nothing was closed

@@ -34,19 +34,10 @@ struct Case {
 
   RadiativeState state() const {
     RadiativeState s;
-    for (std::size_t i = 0; i < enclosure.sphere_count(); ++i) {
-      s.temperature_K.push_back(sphere_temperature_K[i]);
-      s.emissivity.push_back(sphere_emissivity[i]);
-      s.role.push_back(WallRole::isothermal);
-    }
-    for (const auto& w : enclosure.walls) {
-      s.temperature_K.push_back(w.temperature_K);
-      s.emissivity.push_back(w.emissivity);
-      s.role.push_back(w.role);
-    }
-    s.temperature_K.push_back(surroundings_K);
-    s.emissivity.push_back(1);
-    s.role.push_back(WallRole::open);
+    for (std::size_t i = 0; i < enclosure.sphere_count(); ++i)
+      s.add(sphere_temperature_K[i], sphere_emissivity[i]);
+    for (const auto& w : enclosure.walls) s.add(w.temperature_K, w.emissivity, w.role);
+    s.add(surroundings_K, 1, WallRole::open);
     return s;
   }
 

@@ -7,7 +7,6 @@
 #include <exception>
 
 #include "coupling/heat/harmonic_radiosity.h"
-#include "dem/base/constants.h"
 #include "dem/base/error.h"
 #include "raytrace/lines/line_plan.h"
 #include "raytrace/same_geometry.h"
@@ -75,28 +74,23 @@ void HarmonicSource::prepare(const Enclosure& enclosure) {
 RadiativeHeat HarmonicSource::net_heat(const Enclosure& enclosure, const RadiativeState& state,
                                        std::uint64_t /*update*/) {
   prepare(enclosure);
-  std::vector<double> power, emissivity;
-  std::vector<char> gives;
-  for (std::size_t s = 0; s < enclosure.surface_count(); ++s) {
-    const WallRole role = state.role[s];
-    const bool wall = s >= enclosure.sphere_count();
-    if (role == WallRole::excluded)
-      throw InputError("radiation.order > 0 (a wall is excluded) make it adiabatic, or use order = 0");
-    power.push_back(emissive_power(state.temperature_K[s]));
-    emissivity.push_back(role == WallRole::adiabatic ? 0 : role == WallRole::open ? 1 : state.emissivity[s]);
-    gives.push_back(wall && (role == WallRole::isothermal || role == WallRole::open));
-  }
+  if (std::count(state.excluded.begin(), state.excluded.end(), 0) !=
+      static_cast<std::ptrdiff_t>(state.excluded.size()))
+    throw InputError(advised("radiation.order > 0 (a wall is excluded)", "make it adiabatic, or use order = 0"));
+  const auto gives = [&](std::size_t s) { return s >= enclosure.sphere_count() && state.radiates(s); };
   std::vector<std::vector<double>> heats(replicates_.size());
   in_parallel(static_cast<int>(replicates_.size()), options_.threads,
-              [&](int r) { heats[r] = solve_harmonic_radiosity(replicates_[r], power, emissivity); });
+              [&](int r) { heats[r] = 
+                heats[r] = solve_harmonic_radiosity(replicates_[r], state.emissive_power_W_m2, state.emissivity);
+              });
 
   RadiativeHeat result;
   std::vector<double> given(heats.size(), 0);
-  for (std::size_t s = 0; s < power.size(); ++s) {
+  for (std::size_t s = 0; s < enclosure.surface_count(); ++s) {
     std::vector<double> of_surface;
     for (std::size_t r = 0; r < heats.size(); ++r) {
       of_surface.push_back(heats[r][s]);
-      if (gives[s]) given[r] -= heats[r][s];
+      if (gives(s)) given[r] -= heats[r][s];
     }
     result.heat_W.push_back(mean(of_surface));
     result.standard_error_W.push_back(error_of_mean(of_surface));

@@ -9,8 +9,7 @@
 namespace granrad {
 
 /// Exchange source by view factors and one radiosity per surface: estimate -> close -> solve.
-/// Isothermal surfaces radiate with their emissivity, adiabatic walls with emissivity 0 and one radiosity per
-/// wall, open walls and the surroundings are black at their temperature, excluded walls are dropped before
+/// A wall of emissivity 0 (adiabatic) re-radiates with one radiosity, excluded walls are dropped before
 /// closure. While the enclosure does not change (a frozen bed) the exchange areas are estimated once. Their
 /// random numbers are chosen by the geometry and not by the update, so that a resumed run finds the same
 /// areas. One radiosity per surface is biased in dense grey beds (+14 % wall heat at phi = 0.43, emissivity
@@ -30,7 +29,7 @@ class RadiositySource : public ExchangeSource {
   int iterations() const { return iterations_; }
 
  private:
-  void prepare(const Enclosure& enclosure, const std::vector<WallRole>& role);
+  void prepare(const Enclosure& enclosure, const std::vector<char>& excluded);
 
   Estimate estimate_;
   Closure closure_;

@@ -43,9 +43,15 @@ const Conductances& HeatModel::conduct(const Bed& bed, Flow& flow) {
 }
 
 HeatModel::ParticleHeat HeatModel::draw_radiation(const Bed& bed, std::uint64_t draw) {
+  return draw_radiation(bed, bed.temperature_K, draw);
+}
+
+HeatModel::ParticleHeat HeatModel::draw_radiation(const Bed& bed, const std::vector<double>& temperature_K,
+                                                  std::uint64_t draw) {
   const Enclosure enclosure = make_enclosure(bed, case_.flow.region);
   if (!source_) source_ = make_radiation_source(case_.heat.radiation, case_.flow, threads_);
-  const RadiativeState state = radiative_state(bed, enclosure, surroundings_K(case_.flow));
+  const RadiativeState state = 
+      radiative_state(bed, temperature_K, enclosure, surroundings_K(case_.flow));
   ParticleHeat result;
   result.all = source_->net_heat(enclosure, state, draw);
   const auto to_particles = [&](const std::vector<double>& by_surface) {
@@ -65,10 +71,8 @@ HeatModel::ParticleHeat HeatModel::draw_radiation(const Bed& bed, std::uint64_t 
 
 void HeatModel::radiate(Bed& bed) {
   // heats of the temperatures the bed will have midway: second order in the interval, see heat_step.h
-  auto temperature_K = midway_temperatures_K(bed, case_.heat.radiation.every_s);
-  bed.temperature_K.swap(temperature_K);
-  auto drawn = draw_radiation(bed, static_cast<std::uint64_t>(radiation_.updates));
-  bed.temperature_K.swap(temperature_K);
+  auto drawn = draw_radiation(bed, midway_temperatures_K(bed, case_.heat.radiation.every_s),
+                              static_cast<std::uint64_t>(radiation_.updates));
   const RadiativeHeat& heat = drawn.all;
   bed.radiative_heat_W = std::move(drawn.heat_W);
   radiation_.updates += 1;

@@ -48,6 +48,9 @@ class HeatModel {
   void load(const StateBlock& radiation, const StateBlock& ledger);
 
  private:
+  /// The same with particles at other temperatures.
+  ParticleHeat draw_radiation(const Bed& bed, const std::vector<double>& temperature_K, std::uint64_t draw);
+
   const Case& case_;
   int threads_;
   std::unique_ptr<ExchangeSource> source_;  ///< made at the first update

@@ -87,17 +87,13 @@ void check_radiation(const RadiationSettings& settings, const Scene& scene, cons
     sweep_exchange_areas(enclosure, {.directions = 1, .lines_per_disc = 1, .replicates = 2});
 }
 
-RadiativeState radiative_state(const Bed& bed, const Enclosure& enclosure, double surroundings_K) {
+RadiativeState radiative_state(const Bed& bed, const std::vector<double>& temperature_K,
+                               const Enclosure& enclosure, double surroundings_K) {
   RadiativeState state;
-  const auto add = [&](double temperature_K, double emissivity, WallRole role) {
-    state.temperature_K.push_back(temperature_K);
-    state.emissivity.push_back(emissivity);
-    state.role.push_back(role);
-  };
   for (std::int32_t i : enclosure.particle)
-    add(bed.temperature_K[i], bed.materials[bed.material[i]].emissivity, WallRole::isothermal);
-  for (const Wall& wall : enclosure.walls) add(wall.temperature_K, wall.emissivity, wall.role);
-  add(surroundings_K, 1, WallRole::open);
+    state.add(temperature_K[i], bed.materials[bed.material[i]].emissivity);
+  for (const Wall& wall : enclosure.walls) state.add(wall.temperature_K, wall.emissivity, wall.role);
+  state.add(surroundings_K, 1, WallRole::open);
   return state;
 }
 

@@ -15,9 +15,10 @@ std::unique_ptr<ExchangeSource> make_radiation_source(const RadiationSettings& s
 /// table, walls that the source cannot serve, particles outside the walls). A bed without particles passes.
 void check_radiation(const RadiationSettings& settings, const Scene& scene, const Bed& bed);
 
-/// Temperatures, emissivities and roles of every surface of an enclosure of `bed`; the surroundings are black
-/// and at the temperature of the first open wall, else as particles enter.
-RadiativeState radiative_state(const Bed& bed, const Enclosure& enclosure, double surroundings_K);
+/// State of every surface of an enclosure of `bed` whose particles have the temperatures given (by particle);
+/// the surroundings are black.
+RadiativeState radiative_state(const Bed& bed, const std::vector<double>& temperature_K,
+                               const Enclosure& enclosure, double surroundings_K);
 
 /// One line for people: "paths, 10000 walks per update".
 std::string describe(const RadiationSettings& settings);

@@ -51,6 +51,7 @@ struct EmbreeTracer::Impl : TracingGeometry {
   };
 
   Nearest trace(const Vec3& origin, const Vec3& direction, std::int32_t from, Query& query) const;
+  bool has_left(const Vec3& origin, const Vec3& direction) const;
   Hit trace_periodic(Vec3 origin, const Vec3& direction, std::int32_t from) const;
   void walk(Query& query, double limit) const;
   bool wall_between_centre_and(const Vec3& origin, std::int32_t sphere, Query& query) const;
@@ -321,8 +322,17 @@ EmbreeTracer::Impl::Nearest EmbreeTracer::Impl::trace(const Vec3& origin, const 
   return nearest(query, exit, infinity);
 }
 
+/// Whether a ray is beyond everything in a direction that does not repeat, on its way out.
+bool EmbreeTracer::Impl::has_left(const Vec3& origin, const Vec3& direction) const {
+  for (int k = 0; k < 3; ++k)
+    if (!periodic[k] &&
+        ((direction[k] > 0 && origin[k] > high[k]) || (direction[k] < 0 && origin[k] < low[k])))
+      return true;
+  return false;
+}
+
 /// Follows the ray from period to period: the origin is kept inside the box, the image of the sphere it left
-/// moves along with it.
+/// moves along with it. A ray that meets nothing in `most_periods` is lost.
 Hit EmbreeTracer::Impl::trace_periodic(Vec3 origin, const Vec3& direction, std::int32_t from) const {
   constexpr int most_periods = 10000;
   const Vec3 period = box_max - box_min;
@@ -365,13 +375,14 @@ Hit EmbreeTracer::Impl::trace_periodic(Vec3 origin, const Vec3& direction, std::
       there.distance_m += travelled * unit_m;
       return there;
     }
+    if (has_left(origin, direction)) return {open, infinity, {}, {}};
     travelled += limit;
     origin += limit * direction;
     const double jump = direction[axis] > 0 ? -period[axis] : period[axis];
     origin[axis] = direction[axis] > 0 ? box_min[axis] : box_max[axis];
     source[axis] += jump;
   }
-  return {open, infinity, {}, {}};
+  return {-1, travelled * unit_m, to_metres(origin), {}};
 }
 
 EmbreeTracer::EmbreeTracer(const Enclosure& enclosure, int threads)

@@ -35,6 +35,7 @@ struct TracingGeometry {
   std::int32_t spheres, open;
   std::array<bool, 3> periodic;
   Vec3 box_min, box_max;
+  Vec3 low{}, high{};  ///< bounds of all spheres and walls, padded
 
   std::vector<Ball> balls;  ///< the spheres in their order, then further periodic images
   std::vector<std::int32_t> sphere_of_ball;

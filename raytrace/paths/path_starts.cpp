@@ -3,21 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dem/base/constants.h"
 #include "dem/base/random.h"
 
 namespace granrad {
 
 PathSurfaces::PathSurfaces(const Enclosure& enclosure, const RadiativeState& state)
-    : first_wall_(static_cast<std::int32_t>(enclosure.sphere_count())) {
-  for (std::size_t s = 0; s < state.role.size(); ++s) {
-    const WallRole role = state.role[s];
-    const bool black = role == WallRole::open || s == enclosure.open_surface();
-    absorptivity_.push_back(role == WallRole::adiabatic ? 0 : black ? 1 : state.emissivity[s]);
-    power_W_m2_.push_back(emissive_power(state.temperature_K[s]));
-    drops_.push_back(role == WallRole::excluded);
-  }
-}
+    : absorptivity_(state.emissivity),
+      power_W_m2_(state.emissive_power_W_m2),
+      drops_(state.excluded),
+      first_wall_(static_cast<std::int32_t>(enclosure.sphere_count())) {}
 
 double PathSurfaces::smallest_absorptivity() const {
   double smallest = 1;

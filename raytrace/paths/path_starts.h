@@ -8,8 +8,7 @@
 
 namespace granrad {
 
-/// What a walk finds at each surface. Open walls and the surroundings are black, adiabatic walls absorb
-/// nothing.
+/// What a walk finds at each surface.
 class PathSurfaces {
  public:
   PathSurfaces(const Enclosure& enclosure, const RadiativeState& state);

@@ -33,19 +33,11 @@ Bed lone_sphere(double emissivity = 1) {
   return bed;
 }
 
-RadiativeState state_of(const Bed& bed) {
+RadiativeState state_of(const Bed& bed, double sphere_K) {
   RadiativeState s;
-  s.temperature_K = {bed.temperature_K[0]};
-  s.emissivity = {bed.materials[0].emissivity};
-  s.role = {WallRole::isothermal};
-  for (const auto& wall : bed.walls) {
-    s.temperature_K.push_back(wall.temperature_K);
-    s.emissivity.push_back(wall.emissivity);
-    s.role.push_back(wall.role);
-  }
-  s.temperature_K.push_back(300);
-  s.emissivity.push_back(1);
-  s.role.push_back(WallRole::open);
+  s.add(sphere_K, bed.materials[0].emissivity);
+  for (const auto& wall : bed.walls) s.add(wall.temperature_K, wall.emissivity, wall.role);
+  s.add(300, 1, WallRole::open);
   return s;
 }
 
@@ -74,8 +66,9 @@ double temperature_after_2_s(ExchangeSource& source, double dt_s, Heats heats) {
   const Enclosure enclosure = make_enclosure(bed, bed.box);
   const auto steps = std::lround(2 / dt_s);
   for (long k = 0; k < steps; ++k) {
-    RadiativeState state = state_of(bed);
-    if (heats == Heats::midway) state.temperature_K[0] = midway_temperatures_K(bed, dt_s)[0];
+    const double sphere_K =
+        heats == Heats::midway ? midway_temperatures_K(bed, dt_s)[0] : bed.temperature_K[0];
+    const RadiativeState state = state_of(bed, sphere_K);
     bed.radiative_heat_W[0] = source.net_heat(enclosure, state, static_cast<std::uint64_t>(k)).heat_W[0];
     advance_temperatures(bed, {}, dt_s);
   }

@@ -55,18 +55,13 @@ Channel channel(double solid_fraction) {
   c.enclosure.radius_m = request.radius_m;
   for (std::size_t i = 0; i < c.enclosure.sphere_count(); ++i)
     c.enclosure.particle.push_back(static_cast<std::int32_t>(i));
-  const auto add = [&](double T, double eps, WallRole role) {
-    c.state.temperature_K.push_back(T);
-    c.state.emissivity.push_back(eps);
-    c.state.role.push_back(role);
-  };
-  for (std::size_t i = 0; i < c.enclosure.sphere_count(); ++i) add(cold_K, emissivity, WallRole::isothermal);
+  for (std::size_t i = 0; i < c.enclosure.sphere_count(); ++i) c.state.add(cold_K, emissivity);
   for (auto& wall : box_walls(request.where.box)) {
     const bool hot = wall.name[0] == 'y';
-    add(hot ? hot_K : cold_K, emissivity, hot ? WallRole::isothermal : WallRole::adiabatic);
+    c.state.add(hot ? hot_K : cold_K, emissivity, hot ? WallRole::isothermal : WallRole::adiabatic);
     c.enclosure.walls.push_back(wall);
   }
-  add(cold_K, 1, WallRole::open);
+  c.state.add(cold_K, 1, WallRole::open);
   return c;
 }
 
@@ -113,10 +108,8 @@ System radiosity_system(const Channel& c, double rays) {
   s.trace_s = seconds(1, [&] { estimate = one_way_estimate(trace_view_factors(c.enclosure, options)); });
   ClosureReport report;
   s.close_s = seconds(1, [&] { s.areas = close(estimate, Closure::reciprocal, report); });
-  for (std::size_t i = 0; i < c.state.role.size(); ++i) {
-    s.power.push_back(emissive_power(c.state.temperature_K[i]));
-    s.emissivity.push_back(c.state.role[i] == WallRole::adiabatic ? 0 : c.state.emissivity[i]);
-  }
+  s.power = c.state.emissive_power_W_m2;
+  s.emissivity = c.state.emissivity;
   return s;
 }
 

@@ -405,5 +405,24 @@ TEST(FarFromTheOrigin, ClosedMeshesDoNotLeak) {
   EXPECT_EQ(c.leaked, 0) << "of " << c.launched[0] + c.launched[1];
 }
 
+// A ray that repeats for ever without meeting anything is lost, and said to be; one that is on its way out of the
+// open sides is met by the surroundings, after few periods. Planted: 'open' for a ray that walked too long.
+TEST(HardEnclosures, PeriodicRaysThatMeetNothingLeakAndThoseThatLeaveAreOpen) {
+  Enclosure e;
+  e.centre_m = {{0.5, 0.5, 0.5}};
+  e.radius_m = {1e-4};
+  e.particle = {0};
+  e.box = {{0, 0, 0}, {1, 1, 1}};
+  e.periodic = {true, true, true};
+  const EmbreeTracer closed(e, 1);
+  const Vec3 slanted = normalized(Vec3{1, 0.3, 0.07});
+  EXPECT_EQ(closed.first_hit({0.1, 0.2, 0.3}, slanted, -1).surface, -1);
+  e.periodic = {true, true, false};
+  const EmbreeTracer open(e, 1);
+  EXPECT_EQ(open.first_hit({0.1, 0.2, 0.5}, normalized(Vec3{1, 0.3, 1e-6}), -1).surface, 1);
+  EXPECT_EQ(open.first_hit({0.1, 0.2, 0.5}, Vec3{0, 0, -1}, -1).surface, 1);
+  EXPECT_EQ(open.first_hit({0.5, 0.5, 0.9}, Vec3{0, 0, -1}, -1).surface, 0) << "back from outside the bounds";
+}
+
 }  // namespace
 }  // namespace granrad

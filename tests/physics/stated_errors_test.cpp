@@ -293,7 +293,8 @@ TEST(ZeroHits, BoundIsExceededInOnePercent) {
           if (hits(c, 0, 1) > 0) continue;
           exceeded_own += exact > zero_hit_bound(c)[0];
           if (hits(c, 1, 0) > 0) continue;
-          exceeded += exact * c.area_m2[0] > zero_hit_bound_m2(c, 0, 1);
+          const auto b = zero_hit_bound(c);
+          exceeded += exact > 1 / (1 / b[0] + c.area_m2[0] / c.area_m2[1] / b[1]);
         }
         const double rate = static_cast<double>(exceeded) / trials;
         std::printf("%s, ratio %.0f, %.1f hits expected: bound exceeded in %.2f %%\n",

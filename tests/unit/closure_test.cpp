@@ -94,16 +94,13 @@ TEST(Closure, RowSumClosesButBreaksReciprocity) {
 }
 
 TEST(Closure, DroppedSurfacesLeaveNoTrace) {
-  const std::vector<char> dropped{0, 0, 0, 0, 1, 1, 0};
-  const ExchangeAreas kept = drop_surfaces(one_way_estimate(box_counts(2000, 4)), dropped);
+  const ExchangeAreas all = one_way_estimate(box_counts(2000, 4));
+  const ExchangeAreas kept = restricted(all, {0, 1, 4, 5, 6});
+  EXPECT_EQ(kept.area_m2.size(), 5u);
+  EXPECT_EQ(value(kept, 1, 2), value(all, 1, 4)) << "rows and columns are renumbered";
   ClosureReport report;
   const ExchangeAreas x = close(kept, Closure::reciprocal, report);
-  for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_NEAR(row_sum(x, i) / x.area_m2[i], 1, 1e-12);
-    EXPECT_EQ(value(x, i, 4), 0);
-  }
-  EXPECT_EQ(row_sum(x, 4), 0);
-  EXPECT_EQ(x.area_m2[4], 0);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(row_sum(x, i) / x.area_m2[i], 1, 1e-12);
 }
 
 TEST(Closure, SurroundingsTakeTheAreaTheirRowNeeds) {
@@ -137,8 +134,7 @@ TEST(Closure, RefusesWhatCannotClose) {
 }
 
 TEST(Closure, AnUnseenPairHasABound) {
-  const HitCounts counts = box_counts(1000, 5);
-  EXPECT_NEAR(zero_hit_bound_m2(counts, 0, 0), 4.605 / (2000 / counts.area_m2[0]), 1e-9);
+  EXPECT_NEAR(zero_hit_bound(box_counts(1000, 5))[0], 4.605e-3, 1e-6);
 }
 
 }  // namespace
