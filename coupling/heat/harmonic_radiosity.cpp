@@ -54,8 +54,9 @@ class System {
       if (reflects_[e] == 0) continue;
       inverse_.back().compute(Eigen::MatrixXd(ConstMap(mass(e), m_.size(e), m_.size(e)) / reflects_[e]));
       if (inverse_.back().info() != Eigen::Success)
-        throw InputError(fmt::format(
-            "radiation.order: surface {} is met by too few lines for its moments; raise rays", s));
+        throw InputError(
+            advised(fmt::format("radiation.order: surface {} is met by too few lines for its moments", s),
+                    "raise rays"));
     }
   }
 
@@ -150,10 +151,10 @@ class System {
       rz = next;
     }
     if (!(r.norm() <= goal))
-      throw NumericalError(
-          fmt::format("radiosities of higher order: residual {:.2e} of the emission after {} "
-                      "iterations try source = \"paths\"",
-                      r.norm() / rhs.norm(), iteration));
+      throw NumericalError(advised(
+          fmt::format("radiosities of higher order: residual {:.2e} of the emission after {} iterations",
+                      r.norm() / rhs.norm(), iteration),
+          "try source = \"paths\""));
     return b + x;
   }
 

@@ -76,13 +76,14 @@ RadiativeHeat HarmonicSource::net_heat(const Enclosure& enclosure, const Radiati
   prepare(enclosure);
   if (std::count(state.excluded.begin(), state.excluded.end(), 0) !=
       static_cast<std::ptrdiff_t>(state.excluded.size()))
-    throw InputError(advised("radiation.order > 0 (a wall is excluded)", "make it adiabatic, or use order = 0"));
+    throw InputError(
+        advised("radiation.order > 0 (a wall is excluded)", "make it adiabatic, or use order = 0"));
   const auto gives = [&](std::size_t s) { return s >= enclosure.sphere_count() && state.radiates(s); };
   std::vector<std::vector<double>> heats(replicates_.size());
-  in_parallel(static_cast<int>(replicates_.size()), options_.threads,
-              [&](int r) { heats[r] = 
-                heats[r] = solve_harmonic_radiosity(replicates_[r], state.emissive_power_W_m2, state.emissivity);
-              });
+  in_parallel(static_cast<int>(replicates_.size()), options_.threads, [&](int r) {
+    heats[r] = heats[r] =
+        solve_harmonic_radiosity(replicates_[r], state.emissive_power_W_m2, state.emissivity);
+  });
 
   RadiativeHeat result;
   std::vector<double> given(heats.size(), 0);

@@ -3,12 +3,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "coupling/heat/harmonic_source.h"
 #include "coupling/heat/radiosity_source.h"
 #include "fit/correlation/correlation.h"
 #include "fit/correlation/correlation_source.h"
+#include "raytrace/lines/black_line_source.h"
+#include "raytrace/lines/line_plan.h"
 #include "raytrace/lines/line_sweep.h"
 #include "raytrace/paths/path_source.h"
 #include "raytrace/rays/view_factors.h"
@@ -27,14 +28,8 @@ RadiositySource::Estimate embree_estimate(const RadiationSettings& settings, int
   };
 }
 
-/// `rays` line ends per particle: every line through a disc ends on it twice. Directions first (500 keep the
-/// scatter between directions below that between lines), then more lines per disc for the fluxes of single
-/// particles.
 LineOptions line_options(const RadiationSettings& settings, std::uint64_t update, int threads) {
-  LineOptions options;
-  options.lines_per_disc = settings.rays > 24000 ? 12 : 6;
-  const double per_direction = 2 * options.lines_per_disc * options.replicates;
-  options.directions = std::max(8, static_cast<int>(std::lround(settings.rays / per_direction)));
+  LineOptions options = lines_for_rays(settings.rays);
   options.seed = settings.seed + update;
   options.threads = threads;
   return options;
@@ -44,6 +39,13 @@ RadiositySource::Estimate line_estimate(const RadiationSettings& settings, int t
   return [=](const Enclosure& enclosure, std::uint64_t update) {
     return sweep_exchange_areas(enclosure, line_options(settings, update, threads));
   };
+}
+
+std::unique_ptr<ExchangeSource> line_source(const RadiationSettings& settings, const Scene& scene,
+                                            int threads) {
+  auto areas = std::make_unique<RadiositySource>(line_estimate(settings, threads), settings.closure);
+  if (scene.engine == EngineKind::none || settings.closure == Closure::row_sum) return areas;
+  return std::make_unique<BlackLineSource>(line_options(settings, 0, threads), std::move(areas));
 }
 
 double stated_solid_fraction(const Scene& scene) {
@@ -69,7 +71,7 @@ std::unique_ptr<ExchangeSource> make_radiation_source(const RadiationSettings& s
     case RadiationKind::lines:
       if (settings.order > 0)
         return std::make_unique<HarmonicSource>(settings.order, line_options(settings, 0, threads));
-      return std::make_unique<RadiositySource>(line_estimate(settings, threads), settings.closure);
+      return line_source(settings, scene, threads);
     case RadiationKind::correlation:
       return std::make_unique<RadiositySource>(
           correlation_exchange(read_correlation(settings.table), stated_solid_fraction(scene)),

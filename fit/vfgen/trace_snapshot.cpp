@@ -12,6 +12,7 @@
 #include "dem/io/import_stl.h"
 #include "dem/io/snapshot.h"
 #include "fit/vfgen/overlaps.h"
+#include "raytrace/lines/line_plan.h"
 #include "raytrace/lines/line_sweep.h"
 #include "raytrace/mesh_check.h"
 
@@ -83,12 +84,13 @@ void refuse_contradictions(const Enclosure& enclosure, const TraceSettings& sett
   if (!problems.empty()) throw InputError(problems);
 }
 
-/// Directions that give the rays asked for: a line through a sphere is a ray from each of its two ends.
+/// The lines of the rays asked for, as a run traces them; of an error asked for, a first round of few.
 LineOptions line_options(const TraceSettings& settings, std::vector<std::int32_t> hot_walls) {
   LineOptions options;
-  const double per_direction = 2 * options.lines_per_disc * options.replicates;
-  options.directions = std::max(16, static_cast<int>(std::lround(settings.rays / per_direction)));
-  if (settings.error > 0) options.directions = 16;
+  if (settings.error > 0)
+    options.directions = 16;
+  else
+    options = lines_for_rays(settings.rays);
   options.seed = settings.seed;
   options.threads = settings.threads;
   options.target_error = settings.error;

@@ -14,8 +14,8 @@ namespace granrad {
 PairPacking::PairPacking(std::size_t surfaces, double events, double per_block)
     : column_bits(static_cast<int>(std::bit_width(surfaces))), surfaces(surfaces) {
   if (column_bits > key_bits)
-    throw InputError(
-        fmt::format("lines: {} surfaces (pairs are packed for fewer than 2^28) try embree", surfaces));
+    throw InputError(advised(
+        fmt::format("lines: {} surfaces (pairs are packed for fewer than 2^28)", surfaces), "try embree"));
   const double rows_per_block = per_block * static_cast<double>(surfaces) / events;
   row_bits = std::clamp(std::ilogb(std::max(1.0, rows_per_block)), 0, key_bits - column_bits);
 }

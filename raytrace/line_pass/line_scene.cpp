@@ -47,8 +47,8 @@ std::vector<std::string> shape_problems(const Enclosure& e) {
           fmt::format("lines: period in {} = {} (must be positive)", "xyz"[k], e.box.size()[k]));
   for (const Wall& wall : e.walls)
     if (!wall.is_polygon())
-      problems.push_back(
-          fmt::format("lines: wall {} = mesh (lines need convex polygons) try embree", wall.name));
+      problems.push_back(advised(fmt::format("lines: wall {} = mesh (lines need convex polygons)", wall.name),
+                                 "try embree"));
     else if (wall.vertices.size() < 3 || !std::all_of(wall.vertices.begin(), wall.vertices.end(), is_finite))
       problems.push_back(fmt::format("lines: wall {} (needs three finite vertices or more)", wall.name));
   for (std::size_t i = 0; i < e.sphere_count(); ++i)
@@ -257,11 +257,12 @@ LineScene::LineScene(const Enclosure& enclosure, double lines_per_disc)
   faces = faces_about(enclosure, middle, tolerance);
   closed = !periodic && edges_close(faces);
   if (periodic && !(edges_close_periodically(faces, period, 10 * tolerance) && holds_volume(enclosure)))
-    throw InputError(
-        "lines: the walls do not close the directions that are not periodic (or do not run through "
-        "those that are) try embree");
+    throw InputError(advised(
+        "lines: the walls do not close the directions that are not periodic (or do not run through those that are)",
+        "try embree"));
   if (enclosure.periodic == std::array<bool, 3>{true, true, true} && radius.empty())
-    throw InputError("lines: an empty box, periodic all round (lines would meet nothing) add particles");
+    throw InputError(
+        advised("lines: an empty box, periodic all round (lines would meet nothing)", "add particles"));
   problems = convexity_problems(enclosure, faces, tolerance);
   const bool walls_hold_all = protrusion(*this, enclosure, problems) <= 0 && closed;
   if (!problems.empty()) throw InputError(problems);

@@ -130,10 +130,9 @@ class Assembly {
     const auto at = static_cast<std::int64_t>(result_.values.size());
     if (const auto known = known_[i].find_or_add(j, at); known != at) return known;
     if (result_.values.size() + entries > limit_)
-      throw InputError(
-          fmt::format("radiation.order = {} (its matrix grows beyond {:.1f} GiB) lower order or rays, or use "
-                      "source = \"paths\"",
-                      order_, static_cast<double>(limit_ * sizeof(double)) / (1 << 30)));
+      throw InputError(advised(fmt::format("radiation.order = {} (its matrix grows beyond {:.1f} GiB)",
+                                           order_, static_cast<double>(limit_ * sizeof(double)) / (1 << 30)),
+                               "lower order or rays, or use source = \"paths\""));
     result_.values.resize(result_.values.size() + entries, 0);
     result_.blocks.push_back({i, j, at});
     return at;
@@ -154,7 +153,8 @@ ExchangeMoments sweep_exchange_moments(const Enclosure& enclosure, const LineOpt
   check_line_options(options);
   const LineScene scene(enclosure, options.lines_per_disc);
   if (scene.is_periodic())
-    throw InputError("radiation.order > 0 (the box is periodic) use order = 0, or source = \"paths\"");
+    throw InputError(
+        advised("radiation.order > 0 (the box is periodic)", "use order = 0, or source = \"paths\""));
   Assembly assembly(enclosure, scene, order, patches, options.memory_limit_bytes);
   LinePass pass(scene);
   for (int k = 0; k < options.directions; ++k) {

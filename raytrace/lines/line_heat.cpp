@@ -72,6 +72,15 @@ struct Estimate {
   std::vector<double> heat, error;
 };
 
+std::vector<std::vector<double>> in_watts(const std::vector<Sums>& total, double unit_W) {
+  std::vector<std::vector<double>> heats;
+  for (const Sums& sums : total) {
+    auto& heat = heats.emplace_back();
+    for (const std::int64_t sum : sums) heat.push_back(unit_W * static_cast<double>(sum));
+  }
+  return heats;
+}
+
 Estimate estimate(const std::vector<Sums>& total, double unit_W) {
   const double replicates = static_cast<double>(total.size());
   Estimate e{std::vector<double>(total[0].size()), std::vector<double>(total[0].size())};
@@ -95,12 +104,20 @@ double relative_error(const Estimate& e, std::size_t spheres) {
   return heat > 0 ? std::sqrt(square(e.error) / heat) : 0;
 }
 
+/// Line ends on surfaces that the lines stand for, by their mean.
+std::int64_t ray_equivalents(const Enclosure& enclosure, const LineScene& scene, const LineOptions& options,
+                             int directions) {
+  const auto areas = surface_areas(enclosure);
+  const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
+  return std::llround(area / (2 * scene.spacing * scene.spacing) * directions * options.replicates);
+}
+
 /// Opposite differences are added at the two ends of every line; anything left over is a line that leaked.
 void check_balance(const std::vector<Sums>& total) {
   for (const Sums& t : total)
     if (std::accumulate(t.begin(), t.end(), std::int64_t{0}) != 0)
-      throw NumericalError(
-          "lines: a line found no wall at one of its ends (rounding at an edge) try another seed");
+      throw NumericalError(advised("lines: a line found no wall at one of its ends (rounding at an edge)",
+                                   "try another seed"));
 }
 
 }  // namespace
@@ -108,7 +125,7 @@ void check_balance(const std::vector<Sums>& total) {
 std::vector<double> sweep_black_heat(const Enclosure& enclosure,
                                      const std::vector<double>& emissive_power_W_m2,
                                      const LineOptions& options, std::vector<double>* standard_error_W,
-                                     LineReport* report) {
+                                     LineReport* report, std::vector<std::vector<double>>* replicate_heat_W) {
   check_line_options(options);
   const LineScene scene(enclosure, options.lines_per_disc);
   if (emissive_power_W_m2.size() != scene.surface_count() ||
@@ -121,10 +138,14 @@ std::vector<double> sweep_black_heat(const Enclosure& enclosure,
   for (int directions = options.directions;;) {
     const auto total = sweep(scene, fixed.power, options, directions);
     check_balance(total);
-    Estimate e = estimate(total, 2 * scene.spacing * scene.spacing / directions * fixed.unit_W_m2);
+    const double unit_W = 2 * scene.spacing * scene.spacing / directions * fixed.unit_W_m2;
+    Estimate e = estimate(total, unit_W);
     const double error = relative_error(e, scene.x.size());
     if (options.target_error <= 0 || error <= options.target_error) {
-      if (report) *report = {0, directions, scene.spacing, error, 1};
+      if (report)
+        *report = {ray_equivalents(enclosure, scene, options, directions), directions, scene.spacing, error,
+                   1};
+      if (replicate_heat_W) *replicate_heat_W = in_watts(total, unit_W);
       if (standard_error_W) *standard_error_W = std::move(e.error);
       return std::move(e.heat);
     }

@@ -43,17 +43,28 @@ int line_threads(int asked) {
   return asked > 0 ? asked : omp_get_max_threads();
 }
 
+LineOptions lines_for_rays(double rays_per_particle) {
+  constexpr double ends_of_500_directions = 24000;
+  LineOptions options;
+  options.lines_per_disc = rays_per_particle > ends_of_500_directions ? 12 : 6;
+  const double per_direction = 2 * options.lines_per_disc * options.replicates;
+  options.directions = std::max(8, static_cast<int>(std::lround(rays_per_particle / per_direction)));
+  return options;
+}
+
 int more_directions(const std::vector<LineRound>& rounds, const LineOptions& options) {
   const auto [directions, error] = rounds.back();
   const double ratio = error / options.target_error, power = falling_power(rounds);
   const double foreseen = directions * std::pow(ratio, 1 / power);
   if (foreseen > most_directions) {
     const double rays_each = 2 * options.lines_per_disc * options.replicates;
-    throw ThresholdMissed(fmt::format(
-        "error = {:.3g} (reached {:.3g} with {:.2g} rays per particle; would need about {:.2g}; the most are "
-        "{:.2g}, for about {:.2g}) ask for less",
-        options.target_error, error, directions * rays_each, foreseen * rays_each,
-        most_directions * rays_each, error * std::pow(directions / most_directions, power)));
+    throw ThresholdMissed(advised(
+        fmt::format(
+            "error = {:.3g} (reached {:.3g} with {:.2g} rays per particle, would need about {:.2g}, the most "
+            "are {:.2g}, for about {:.2g})",
+            options.target_error, error, directions * rays_each, foreseen * rays_each,
+            most_directions * rays_each, error * std::pow(directions / most_directions, power)),
+        "ask for less"));
   }
   return static_cast<int>(
       std::min(most_directions, std::ceil(directions * std::clamp(1.1 * ratio * ratio, 1.3, 4.0))));

@@ -11,6 +11,11 @@ void check_line_options(const LineOptions& options);
 /// Number of threads to use: `asked`, or OpenMP's default for 0.
 int line_threads(int asked);
 
+/// Options that give `rays_per_particle` line ends to a small sphere: every line through its disc ends on it twice.
+/// Directions first (500 keep the scatter between directions below that between lines), then more lines per disc for
+/// the fluxes of single particles.
+LineOptions lines_for_rays(double rays_per_particle);
+
 /// An attempt and the error it found.
 struct LineRound {
   int directions;

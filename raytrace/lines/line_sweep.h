@@ -71,11 +71,13 @@ ExchangeAreas sweep_exchange_areas(const Enclosure& enclosure, const LineOptions
 
 /// Net heat received by every black surface, W, without a matrix: sum_j X_ij (E_j - E_i) for the emissive
 /// powers E [surface_count], W/m^2. Sums in integers: the heats add up to zero within round-off of the
-/// result, equal E give exactly zero, and the bits do not depend on threads or instruction set.
+/// result, equal E give exactly zero, and the bits do not depend on threads or instruction set. `replicate_heat_W`
+/// takes the heats of each replicate, whose mean is the result: for errors of sums.
 std::vector<double> sweep_black_heat(const Enclosure& enclosure,
                                      const std::vector<double>& emissive_power_W_m2,
                                      const LineOptions& options,
                                      std::vector<double>* standard_error_W = nullptr,
-                                     LineReport* report = nullptr);
+                                     LineReport* report = nullptr,
+                                     std::vector<std::vector<double>>* replicate_heat_W = nullptr);
 
 }  // namespace granrad

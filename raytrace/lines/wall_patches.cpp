@@ -13,8 +13,8 @@ WallPatches::WallPatches(const std::vector<Wall>& walls, double longest_m) {
   for (std::size_t w = 0; w < walls.size(); ++w) {
     const Wall& wall = walls[w];
     if (!wall.is_polygon())
-      throw InputError(
-          fmt::format("wall {} (a mesh has no patches) use order = 0, or source = \"paths\"", wall.name));
+      throw InputError(advised(fmt::format("wall {} (a mesh has no patches)", wall.name),
+                               "use order = 0, or source = \"paths\""));
     const Vec3& corner = wall.vertices[0];
     const Vec3 u = normalized(wall.vertices[1] - corner), v = cross(polygon_normal(wall), u);
     double low[2] = {0, 0}, high[2] = {0, 0};

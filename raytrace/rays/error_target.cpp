@@ -23,8 +23,9 @@ double sum(const std::vector<std::int64_t>& rays) {
 void refuse_out_of_reach(const std::vector<std::int64_t>& wanted, double error, const TraceReport& report) {
   if (*std::max_element(wanted.begin(), wanted.end()) <= most_rays_of_a_surface) return;
   throw ThresholdMissed(
-      fmt::format("error = {:.3g} (reached {:.3g} with {:.2g} rays; would need {:.2g}) ask for less", error,
-                  report.error, static_cast<double>(report.rays), sum(wanted)));
+      advised(fmt::format("error = {:.3g} (reached {:.3g} with {:.2g} rays, would need {:.2g})", error,
+                          report.error, static_cast<double>(report.rays), sum(wanted)),
+              "ask for less"));
 }
 
 }  // namespace

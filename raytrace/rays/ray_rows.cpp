@@ -226,8 +226,9 @@ bool may_outgrow(const std::vector<std::int64_t>& rays, std::size_t limit_bytes)
   const double surfaces = static_cast<double>(rays.size()), limit = static_cast<double>(limit_bytes);
   const double least = surfaces * (bytes_per_surface + fewest_pairs * bytes_per_pair);
   if (limit < least)
-    throw InputError(fmt::format("memory = {:.3g} MiB ({} surfaces need at least {:.3g} MiB) allow more",
-                                 limit * 0x1p-20, rays.size(), least * 0x1p-20));
+    throw InputError(advised(fmt::format("memory = {:.3g} MiB ({} surfaces need at least {:.3g} MiB)",
+                                         limit * 0x1p-20, rays.size(), least * 0x1p-20),
+                             "allow more"));
   double pairs = 0;
   for (const std::int64_t n : rays) pairs += std::min(static_cast<double>(n), surfaces);
   return bytes_per_surface * surfaces + bytes_per_pair * pairs > limit;
@@ -359,8 +360,9 @@ HitCounts trace_rows(const Enclosure& enclosure, const std::vector<double>& emit
   const std::size_t surfaces = enclosure.surface_count();
   for (std::size_t i = 0; i < surfaces; ++i)
     if (rays[i] > most_rays_of_a_surface)
-      throw InputError(fmt::format("rays = {} of surface {} (at most {} each) ask for fewer", rays[i], i,
-                                   most_rays_of_a_surface));
+      throw InputError(advised(
+          fmt::format("rays = {} of surface {} (at most {} each)", rays[i], i, most_rays_of_a_surface),
+          "ask for fewer"));
   RowTracer tracer(enclosure, rays, options, follow);
 
   std::int64_t unit = 1;
