@@ -33,8 +33,7 @@ std::unique_ptr<Engine> make_liggghts_engine(const Vec3& gravity_m_s2, double st
 
 /// What keeps LIGGGHTS from running this scene, each with its key and advice; empty: nothing. A build without
 /// it; a restitution of 0.05 or less; walls with materials of several Young's moduli or Poisson ratios (its
-/// walls have one of each, ours are of each particle's own material); a wall that moves across its own
-/// surface (it keeps the tangential part only).
+/// walls have one of each, ours are of each particle's own material).
 std::vector<std::string> liggghts_problems(const Scene& scene);
 
 }  // namespace granrad

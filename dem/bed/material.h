@@ -1,5 +1,9 @@
 #pragma once
+#include <optional>
 #include <string>
+#include <vector>
+
+#include "dem/base/number_rule.h"
 
 namespace granrad {
 
@@ -17,5 +21,22 @@ struct Material {
   double rolling_friction = 0;  ///< constant directional torque coefficient mu_r
   double emissivity = 1;        ///< grey, diffuse, in (0, 1]
 };
+
+/// One number of a material: its key in a scene and its name in a frame, what it must be, and what it is when a
+/// scene does not say.
+struct MaterialNumber {
+  const char* key;
+  double Material::*value;
+  NumberRule rule;
+  std::optional<double> standard = {};
+  double Material::*standard_like = nullptr;  ///< as that other number
+};
+
+/// All of them, in the order of reading. Scenes, frames and engines go over this list: a new property is a member
+/// above and a line there.
+const std::vector<MaterialNumber>& material_numbers();
+
+/// Whether two materials agree in every number; names may differ.
+bool same_numbers(const Material& a, const Material& b);
 
 }  // namespace granrad

@@ -30,7 +30,7 @@ struct Wall {
   double temperature_K = 300;
   double emissivity = 1;
   bool contact = true;  ///< particles touch it; false: a radiating boundary only (the ends of a channel)
-  Vec3 velocity_m_s{};  ///< surface velocity for friction (a conveyor); the geometry does not move
+  Vec3 velocity_m_s{};  ///< of the sliding surface (a belt), along it; the geometry does not move
   double opens_at_s = infinity;  ///< a shutter: no contact from then on
 
   bool is_polygon() const { return triangles.empty(); }

@@ -111,10 +111,10 @@ class FrameReader {
   void read_materials(Bed& bed) const {
     for (auto& name : in_.read_texts("/granrad/materials/name"))
       bed.materials.emplace_back().name = std::move(name);
-    for (const auto& [property, member] : material_columns()) {
-      const auto column = in_.read<double>("/granrad/materials/" + property);
-      sound(column.size() == bed.materials.size(), "material " + property);
-      for (std::size_t m = 0; m < column.size(); ++m) bed.materials[m].*member = column[m];
+    for (const auto& number : material_numbers()) {
+      const auto column = in_.read<double>(std::string("/granrad/materials/") + number.key);
+      sound(column.size() == bed.materials.size(), std::string("material ") + number.key);
+      for (std::size_t m = 0; m < column.size(); ++m) bed.materials[m].*number.value = column[m];
     }
   }
 

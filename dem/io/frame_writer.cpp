@@ -82,10 +82,10 @@ void write_materials(Hdf5Writer& out, const std::vector<Material>& materials) {
   std::vector<std::string> names;
   for (const auto& m : materials) names.push_back(m.name);
   out.write("/granrad/materials/name", names);
-  for (const auto& [property, member] : material_columns()) {
+  for (const auto& number : material_numbers()) {
     std::vector<double> column;
-    for (const auto& m : materials) column.push_back(m.*member);
-    out.write(fmt::format("/granrad/materials/{}", property), column);
+    for (const auto& m : materials) column.push_back(m.*number.value);
+    out.write(fmt::format("/granrad/materials/{}", number.key), column);
   }
 }
 

@@ -58,7 +58,7 @@ void add_domain(const Bed& bed, const WallMeshes& walls, std::vector<std::string
        "neigh_modify delay 0 every 1 check yes page 1000000 one 20000"});
 }
 
-/// A property of pairs: the geometric mean, as dem/native/materials.h mixes it; a wall takes the particle's.
+/// A property of pairs: the geometric mean, as dem/native/hertz_mindlin.h mixes it; a wall takes the particle's.
 std::string pair_property(const char* name, const std::vector<const Material*>& types,
                           double Material::*value) {
   std::string line =

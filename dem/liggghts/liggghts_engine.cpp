@@ -16,9 +16,8 @@ void check_finite(const Spheres& s, const Bed& bed) {
   for (std::size_t i = 0; i < bed.size(); ++i)
     if (!is_finite(s.position_m[i]) || !is_finite(s.velocity_m_s[i]) ||
         !is_finite(s.angular_velocity_rad_s[i]))
-      throw NumericalError(
-          fmt::format("particle {} left the range of numbers try a smaller step or less overlap at the start",
-                      bed.id[i]));
+      throw NumericalError(advised(fmt::format("particle {} left the range of numbers", bed.id[i]),
+                                   "try a smaller step or less overlap at the start"));
 }
 
 class LiggghtsEngine final : public Engine {

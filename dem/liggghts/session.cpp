@@ -191,9 +191,8 @@ Session::Session() : impl_(std::make_unique<Impl>()) {
   impl_->lmp = static_cast<LAMMPS_NS::LAMMPS*>(impl_->handle);
   // The layout of its classes is that of its headers.
   if (lammps_extract_global(impl_->handle, "nlocal") != &impl_->lmp->atom->nlocal)
-    throw InputError(
-        "dem.engine = \"liggghts\" (the library does not belong to its headers) reinstall "
-        "libliggghts-dev and configure again");
+    throw InputError(advised("dem.engine = \"liggghts\" (the library does not belong to its headers)",
+                             "reinstall libliggghts-dev and configure again"));
 }
 
 Session::~Session() {
@@ -206,8 +205,9 @@ void Session::Impl::set_up(const std::string& what, F action) {
   try {
     guarded(action);
   } catch (const Refusal& refusal) {
-    throw InputError("dem.engine = \"liggghts\" (LIGGGHTS refuses '" + what + "': " + refusal.message +
-                     ") change the scene or use \"native\"");
+    throw InputError(
+        advised("dem.engine = \"liggghts\" (LIGGGHTS refuses '" + what + "': " + refusal.message + ")",
+                "change the scene or use \"native\""));
   }
 }
 
@@ -218,8 +218,9 @@ void Session::command(const std::string& line) {
 FixContactHistory& Session::Impl::history(Fix* fix, const char* name) const {
   auto* found = dynamic_cast<FixContactHistory*>(fix);
   if (!found || found->get_dnum() != 3)
-    throw InputError(std::string("dem.engine = \"liggghts\" (no history of three values in ") + name +
-                     ") use libliggghts 3.8");
+    throw InputError(
+        advised(std::string("dem.engine = \"liggghts\" (no history of three values in ") + name + ")",
+                "use libliggghts 3.8"));
   return *found;
 }
 
@@ -242,7 +243,9 @@ void Session::Impl::finish_set_up() {
     auto* surface = dynamic_cast<FixMeshSurface*>(modify->find_fix_id(id.c_str()));
     auto* of_mesh = surface ? surface->contactHistory() : nullptr;
     auto* neighbours = modify->find_fix_id(("n_neighs_mesh_" + id).c_str());
-    if (!neighbours) throw InputError("dem.engine = \"liggghts\" (no neighbour count of mesh " + id + ")");
+    if (!neighbours)
+      throw InputError(advised("dem.engine = \"liggghts\" (no neighbour count of mesh " + id + ")",
+                               "use libliggghts 3.8"));
     meshes.push_back({&history(of_mesh, id.c_str()), neighbours});
   }
 }
@@ -251,7 +254,9 @@ void Session::Impl::finish_set_up() {
 int& Session::Impl::lists_are_newer() {
   int dimension = 0;
   auto* flag = static_cast<int*>(lmp->force->pair->extract("computeflag", dimension));
-  if (!flag) throw InputError("dem.engine = \"liggghts\" (no state of its lists) use libliggghts 3.8");
+  if (!flag)
+    throw InputError(
+        advised("dem.engine = \"liggghts\" (no state of its lists)", "use libliggghts 3.8"));
   return *flag;
 }
 
@@ -346,8 +351,8 @@ void Session::run(Spheres& spheres, std::int64_t steps) {
       impl_->read(spheres);
     });
   } catch (const Refusal& refusal) {
-    throw NumericalError("LIGGGHTS stopped: " + refusal.message +
-                         ". Try a smaller step or engine = \"native\"");
+    throw NumericalError(
+        advised("LIGGGHTS stopped: " + refusal.message, "try a smaller step or engine = \"native\""));
   }
 }
 

@@ -19,12 +19,6 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 
-bool same_solid(const Material& a, const Material& b) {
-  return a.density_kg_m3 == b.density_kg_m3 && a.youngs_modulus_Pa == b.youngs_modulus_Pa &&
-         a.poisson_ratio == b.poisson_ratio && a.restitution == b.restitution && a.friction == b.friction &&
-         a.rolling_friction == b.rolling_friction;
-}
-
 void check(const Bed& bed) {
   std::vector<std::string> problems;
   for (std::size_t i = 0; i < bed.size() && problems.size() < 20; ++i) {
@@ -32,7 +26,7 @@ void check(const Bed& bed) {
         bed.material[i] >= 0 && bed.material[i] < static_cast<std::int32_t>(bed.materials.size());
     const auto complain = [&](const char* what, double value, const char* why) {
       problems.push_back(
-          fmt::format("particle {}: {} = {} ({}) correct the bed", bed.id[i], what, value, why));
+          advised(fmt::format("particle {}: {} = {} ({})", bed.id[i], what, value, why), "correct the bed"));
     };
     if (!(bed.radius_m[i] > 0 && std::isfinite(bed.radius_m[i])))
       complain("radius", bed.radius_m[i], "must be positive");
@@ -57,8 +51,9 @@ void check(const Bed& bed) {
     const double largest = *std::max_element(bed.radius_m.begin(), bed.radius_m.end());
     if (bed.box.size()[a] < 4 * largest)
       problems.push_back(
-          fmt::format("box.size_m[{}] = {} (periodic: a particle would touch itself) try at least {}", a,
-                      bed.box.size()[a], 4 * largest));
+          advised(fmt::format("box.size_m[{}] = {} (periodic: a particle would touch itself)", a,
+                              bed.box.size()[a]),
+                  fmt::format("try at least {}", 4 * largest)));
   }
   if (!problems.empty()) throw InputError(problems);
 }
@@ -68,7 +63,7 @@ void check(const Bed& bed) {
 bool BedTransfer::same_particles(const Bed& bed) const {
   return same_bits(bed.id, id_) && same_bits(bed.radius_m, radius_) && same_bits(bed.material, material_) &&
          std::equal(bed.materials.begin(), bed.materials.end(), materials_.begin(), materials_.end(),
-                    same_solid);
+                    same_numbers);
 }
 
 bool BedTransfer::holds(const Bed& bed, const Rows& rows) const {
@@ -95,7 +90,7 @@ void BedTransfer::lay_out(const Bed& bed, Rows& rows, int threads) {
     rows.bed_index[i] = rows.row_of[i] = static_cast<std::int32_t>(i);
     rows.mass[i] = mass_kg(bed, i);
     rows.uniform &= bed.radius_m[i] == bed.radius_m[0] && bed.material[i] == bed.material[0] &&
-                    bed.materials[bed.material[i]].rolling_friction == 0;
+                    !ContactLaw::rolls(bed.materials[bed.material[i]]);
   }
   rows.bed_index.resize(all), rows.radius.resize(all), rows.mass.resize(all), rows.material.resize(all);
   // Idle rows: a pair far apart, whatever the period.
@@ -157,9 +152,8 @@ void BedTransfer::store(const Rows& rows, const std::vector<Share>& shares, Bed&
     if (!std::isfinite(sum)) broken = std::max<std::int64_t>(broken, b);
   }
   if (broken >= 0)
-    throw NumericalError(
-        fmt::format("particle {} left the range of numbers try a smaller step or less overlap at the start",
-                    bed.id[broken]));
+    throw NumericalError(advised(fmt::format("particle {} left the range of numbers", bed.id[broken]),
+                                 "try a smaller step or less overlap at the start"));
   store_springs(rows, shares, bed);
 }
 

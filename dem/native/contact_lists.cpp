@@ -39,10 +39,7 @@ double ContactLists::margin_of(double speed, std::int64_t steps) const {
 void ContactLists::survey_speeds(const Rows& rows, const Bed& bed) {
   std::int64_t tunnels = rows.count;
   double sum = 0;
-#pragma omp parallel for num_threads(static_cast <int>(shares_.size())) schedule(static) \
-    reduction(min                                                                        \
-              : tunnels) reduction(+                                                     \
-                                   : sum)
+#pragma omp parallel for num_threads(threads()) schedule(static) reduction(min : tunnels) reduction(+ : sum)
   for (std::int64_t i = 0; i < rows.count; ++i) {
     const Vec3 v = rows.velocity_of(i), p = rows.position_of(i);
     const bool sound =
@@ -53,38 +50,37 @@ void ContactLists::survey_speeds(const Rows& rows, const Bed& bed) {
   usual_speed_m_s_ = rows.count ? sum / double(rows.count) : 0;
   if (tunnels == rows.count) return;
   const Vec3 v = rows.velocity_of(tunnels), p = rows.position_of(tunnels);
-  const double advised = 0.5 * fastest_step * rows.radius[tunnels] / largest_component(v);
-  throw NumericalError(
-      fmt::format("particle {} at ({:.6g}, {:.6g}, {:.6g}) m moves at {:.4g} m/s, more than {} of its "
-                  "radius per step of {:.3g} s (it would tunnel) try a step of {:.2g} s, a higher Young's "
-                  "modulus, or starting positions with less overlap",
-                  bed.id[rows.bed_index[tunnels]], p.x, p.y, p.z, norm(v), fastest_step, step_s_, advised));
+  const double slower = 0.5 * fastest_step * rows.radius[tunnels] / largest_component(v);
+  throw NumericalError(advised(
+      fmt::format("particle {} at ({:.6g}, {:.6g}, {:.6g}) m moves at {:.4g} m/s, more than {} of its radius "
+                  "per step of {:.3g} s (it would tunnel)",
+                  bed.id[rows.bed_index[tunnels]], p.x, p.y, p.z, norm(v), fastest_step, step_s_),
+      fmt::format("try a step of {:.2g} s, a higher Young's modulus, or starting positions with less overlap",
+                  slower)));
 }
 
 /// How far row i may still move from where it is: beside the mean within the near list, in all within the
 /// wall list.
-ContactLists::Room ContactLists::room_of(const Rows& rows, std::int64_t i, const Vec3& moved) const {
+ContactLists::Slack ContactLists::slack_of(const Rows& rows, std::int64_t i, const Vec3& moved) const {
   const Vec3 p = rows.position_of(i);
-  const auto way = [&](const std::vector<double>& from, const Vec3& beside) {
+  const auto distance_moved = [&](const std::vector<double>& from, const Vec3& beside) {
     return norm(p - Vec3{from[3 * i], from[3 * i + 1], from[3 * i + 2]} - beside);
   };
-  return {skins_.half_m[i] - way(near_origin_, moved),
-          walls_stale_ || !has_walls_ ? 1e300 : skins_.half_m[i] - way(wall_origin_, {})};
+  return {skins_.half_m[i] - distance_moved(near_origin_, moved),
+          walls_stale_ || !has_walls_ ? 1e300 : skins_.half_m[i] - distance_moved(wall_origin_, {})};
 }
 
-ContactLists::Room ContactLists::measure(const Rows& rows, std::int64_t steps) const {
+ContactLists::Slack ContactLists::measure_slack(const Rows& rows, std::int64_t steps) const {
   if (stale_) return {-1, -1};
   const Vec3 moved = drift();
   const double mean_reach = norm(mean_velocity_) * step_s_ * double(steps);
   double near = 1e300, walls = 1e300;
-#pragma omp parallel for num_threads(static_cast <int>(shares_.size())) schedule(static) \
-    reduction(min                                                                        \
-              : near, walls)
+#pragma omp parallel for num_threads(threads()) schedule(static) reduction(min : near, walls)
   for (std::int64_t i = 0; i < rows.count; ++i) {
     const double margin = margin_of(largest_component(rows.velocity_of(i) - mean_velocity_), steps);
-    const Room room = room_of(rows, i, moved);
-    near = std::min(near, room.near_m - margin);
-    walls = std::min(walls, room.walls_m - margin - mean_reach);
+    const Slack slack = slack_of(rows, i, moved);
+    near = std::min(near, slack.near_m - margin);
+    walls = std::min(walls, slack.walls_m - margin - mean_reach);
   }
   return {near, walls};
 }
@@ -95,11 +91,11 @@ void ContactLists::set_reaches(Rows& rows, std::int64_t steps) {
   rows.reference.resize(4 * rows.count);
   const Vec3 moved = drift();
   const double life_s = step_s_ * double(steps), mean_reach = norm(mean_velocity_) * life_s;
-#pragma omp parallel for num_threads(static_cast <int>(shares_.size())) schedule(static)
+#pragma omp parallel for num_threads(threads()) schedule(static)
   for (std::int64_t i = 0; i < rows.count; ++i) {
     const Vec3 v = rows.velocity_of(i);
-    const Room room = room_of(rows, i, moved);
-    const double listed = std::min(room.near_m, room.walls_m - mean_reach) / (diagonal * life_s) -
+    const Slack slack = slack_of(rows, i, moved);
+    const double listed = std::min(slack.near_m, slack.walls_m - mean_reach) / (diagonal * life_s) -
                           largest_component(v - mean_velocity_);
     const double sound = fastest_step * rows.radius[i] / step_s_ - largest_component(v);
     const double change = std::max(0.0, std::min({spare_speed_m_s_ + closing_[i], listed, sound}));
@@ -114,7 +110,7 @@ void ContactLists::anticipate(Rows& rows, Model& model, const Periods& periods, 
                               std::int64_t steps) {
   model.constants.life_s = step_s_ * double(steps);
   set_reaches(rows, steps);
-#pragma omp parallel num_threads(static_cast <int>(shares_.size()))
+#pragma omp parallel num_threads(threads())
   {
     Share& share = shares_[omp_get_thread_num()];
     share.own.find_closing_speeds(kernels_, rows.view(), model.constants, false, closing_);
@@ -127,16 +123,16 @@ void ContactLists::anticipate(Rows& rows, Model& model, const Periods& periods, 
 
 std::int64_t ContactLists::wanted_life(double largest_radius) const {
   const double usual = schedule_.refresh_every, longest = longest_life * usual;
-  const double way_m = 2 * diagonal * usual_speed_m_s_ * step_s_;
-  const double crossing = way_m > 0 ? smallest_margin * largest_radius / way_m : longest;
+  const double closing_m = 2 * diagonal * usual_speed_m_s_ * step_s_;
+  const double crossing = closing_m > 0 ? smallest_margin * largest_radius / closing_m : longest;
   return static_cast<std::int64_t>(std::clamp(crossing, usual, longest));
 }
 
 void ContactLists::sort_rows(Rows& rows, const Periods& periods, const Bed& bed, double cell_m) {
-  const auto order = grid_.sort(rows, periods, bed.box, cell_m, static_cast<int>(shares_.size()));
+  const auto order = grid_.sort(rows, periods, bed.box, cell_m, threads());
   const auto permute = [&](auto& column, int width) {
     auto sorted = column;
-#pragma omp parallel for num_threads(static_cast <int>(shares_.size())) schedule(static)
+#pragma omp parallel for num_threads(threads()) schedule(static)
     for (std::int64_t i = 0; i < rows.count; ++i)
       std::copy_n(column.begin() + width * std::int64_t(order[i]), width, sorted.begin() + width * i);
     column.swap(sorted);
@@ -176,13 +172,67 @@ void ContactLists::find_walls(const Rows& rows, const Periods& periods, const Wa
   wall_origin_.resize(3 * rows.count);
   listed_wall_gap_m_ = std::max(0.0, asked_gap_m_);
   const Vec3 moved = drift();
-#pragma omp parallel num_threads(static_cast <int>(shares_.size()))
+#pragma omp parallel num_threads(threads())
   {
     Share& share = shares_[omp_get_thread_num()];
     share.walls.find_near(surface, grid_, rows, periods, share.range, skins_.half_m, listed_wall_gap_m_,
                           moved, skins_.widest_m);
     for (auto i = share.range.begin; i < share.range.end; ++i)
       for (int a = 0; a < 3; ++a) wall_origin_[3 * i + a] = rows.position[4 * i + a];
+  }
+}
+
+bool ContactLists::rebuild_is_due(const Slack& slack) const {
+  const bool scheduled = schedule_.rebuild_every > 0 && steps_since_sort_ >= schedule_.rebuild_every;
+  return stale_ || scheduled || listed_gap_m_ < asked_gap_m_ || slack.near_m < 0;
+}
+
+void ContactLists::restore_walls(const Rows& rows) {
+  std::vector<std::vector<WallMemory>> at_walls(shares_.size());
+  for (const auto& m : memories_) {
+    if (m.second >= 0) continue;
+    const auto row = rows.row_of[m.first];
+    for (std::size_t t = 0; t < shares_.size(); ++t)
+      if (shares_[t].owns(row)) at_walls[t].push_back({row, -1 - m.second, m.displacement});
+  }
+  for (std::size_t t = 0; t < shares_.size(); ++t) {
+    std::sort(at_walls[t].begin(), at_walls[t].end(),
+              [](const WallMemory& a, const WallMemory& b) { return a.row < b.row; });
+    shares_[t].walls.restore(std::move(at_walls[t]));
+  }
+}
+
+void ContactLists::rebuild(Rows& rows, const Model& model, const Periods& periods, const Bed& bed,
+                           std::int64_t steps) {
+  ++rebuilds;
+  if (!stale_) memories_ = collect(rows);
+  Vec3 sum;
+  for (std::int64_t i = 0; i < rows.count; ++i) sum += rows.velocity_of(i);
+  mean_velocity_ = rows.count ? sum * (1.0 / double(rows.count)) : Vec3{};
+  steps_since_sort_ = 0;
+  stale_ = true;
+  listed_gap_m_ = std::max(0.0, asked_gap_m_);
+  choose_skins(rows, model.largest_radius, steps);
+  sort_rows(rows, periods, bed, 2 * (model.largest_radius + skins_.base_m + 0.5 * listed_gap_m_) * 1.00001);
+  NearSearch(kernels_, grid_, rows, periods, skins_, listed_gap_m_).fill(shares_);
+  memory_table_.build(memories_, rows);
+  restore_walls(rows);
+  memories_.clear();
+  stale_ = false, walls_stale_ = true;
+}
+
+void ContactLists::refresh(Rows& rows, const Model& model, const Periods& periods, const Bed& bed,
+                           const WallSurface& surface) {
+#pragma omp parallel num_threads(threads())
+  {
+    const int t = omp_get_thread_num();
+    Share& share = shares_[t];
+    for (PairList* list : {&share.own, &share.cross}) {
+      list->refresh(kernels_, rows.view(), model.constants, memory_table_);
+      if (!rows.uniform) list->fill_coefficients(rows, bed.materials);
+    }
+    share.walls.refresh(surface, rows, periods, bed.materials, model.constants.life_s,
+                        static_cast<std::int32_t>(rows.count + 2 * t));
   }
 }
 
@@ -197,60 +247,19 @@ std::int64_t ContactLists::prepare(Rows& rows, Model& model, const Periods& peri
   spare_speed_m_s_ =
       std::max(spare_speed_m_s_, smallest_margin * model.largest_radius / (step_s_ * double(steps)));
   closing_.assign(rows.count + 2 * shares_.size(), 0);
-  Room room = measure(rows, steps);
-  const bool due = (schedule_.rebuild_every > 0 && steps_since_sort_ >= schedule_.rebuild_every) ||
-                   listed_gap_m_ < asked_gap_m_;
-  const bool rebuild = stale_ || due || room.near_m < 0;
-  if (rebuild) {
-    ++rebuilds;
-    if (!stale_) memories_ = collect(rows);
-    Vec3 sum;
-    for (std::int64_t i = 0; i < rows.count; ++i) sum += rows.velocity_of(i);
-    mean_velocity_ = rows.count ? sum * (1.0 / double(rows.count)) : Vec3{};
-    steps_since_sort_ = 0;
-    stale_ = true;
-    listed_gap_m_ = std::max(0.0, asked_gap_m_);
-    choose_skins(rows, model.largest_radius, steps);
-    sort_rows(rows, periods, bed, 2 * (model.largest_radius + skins_.base_m + 0.5 * listed_gap_m_) * 1.00001);
-    NearSearch(kernels_, grid_, rows, periods, skins_, listed_gap_m_).fill(shares_);
-    memory_table_.build(memories_, rows);
-    std::vector<std::vector<WallMemory>> at_walls(shares_.size());
-    for (const auto& m : memories_) {
-      if (m.second >= 0) continue;
-      const auto row = rows.row_of[m.first];
-      for (std::size_t t = 0; t < shares_.size(); ++t)
-        if (row >= shares_[t].range.begin && row < shares_[t].range.end)
-          at_walls[t].push_back({row, -1 - m.second, m.displacement});
-    }
-    for (std::size_t t = 0; t < shares_.size(); ++t) {
-      std::sort(at_walls[t].begin(), at_walls[t].end(),
-                [](const WallMemory& a, const WallMemory& b) { return a.row < b.row; });
-      shares_[t].walls.restore(std::move(at_walls[t]));
-    }
-    memories_.clear();
-    stale_ = false, walls_stale_ = true;
-  }
-  const bool walls_due = walls_stale_ || room.walls_m < 0;
+  Slack slack = measure_slack(rows, steps);
+  const bool rebuilt = rebuild_is_due(slack);
+  if (rebuilt) rebuild(rows, model, periods, bed, steps);
+  const bool walls_due = walls_stale_ || slack.walls_m < 0;
   if (walls_due) {
     find_walls(rows, periods, surface);
     walls_stale_ = false;
   }
-  if (rebuild || walls_due) room = measure(rows, steps);
+  if (rebuilt || walls_due) slack = measure_slack(rows, steps);
   // A fast particle shortens the life of the list.
-  while (steps > 1 && std::min(room.near_m, room.walls_m) < 0) room = measure(rows, steps /= 2);
+  while (steps > 1 && slack.least_m() < 0) slack = measure_slack(rows, steps /= 2);
   anticipate(rows, model, periods, surface, steps);
-  const bool varied = !rows.uniform;
-#pragma omp parallel num_threads(static_cast <int>(shares_.size()))
-  {
-    const int t = omp_get_thread_num();
-    Share& share = shares_[t];
-    for (PairList* list : {&share.own, &share.cross}) {
-      list->refresh(kernels_, rows.view(), model.constants, memory_table_);
-      if (varied) list->fill_coefficients(rows, bed.materials);
-    }
-    share.walls.refresh(surface, rows, periods, bed.materials, model.constants.life_s,
-                        static_cast<std::int32_t>(rows.count + 2 * t));
-  }
+  refresh(rows, model, periods, bed, surface);
   life_ = promised_ = steps;
   return life_;
 }
@@ -266,7 +275,7 @@ void ContactLists::spend(std::int64_t steps, bool limit_broken) {
 
 std::vector<Memory> ContactLists::collect(const Rows& rows) const {
   std::vector<std::vector<Memory>> parts(shares_.size());
-#pragma omp parallel num_threads(static_cast <int>(shares_.size()))
+#pragma omp parallel num_threads(threads())
   {
     const int t = omp_get_thread_num();
     shares_[t].visit_springs(rows, [&](std::int32_t a, std::int64_t b, const Vec3& s) {
@@ -281,9 +290,9 @@ std::vector<Memory> ContactLists::collect(const Rows& rows) const {
 ContactLists::CompleteGaps ContactLists::complete_gaps(const Rows& rows) const {
   CompleteGaps gaps;
   if (stale_) return gaps;
-  const Room room = measure(rows, 0);
-  gaps.particles_m = listed_gap_m_ + 2 * room.near_m;
-  if (!walls_stale_) gaps.walls_m = listed_wall_gap_m_ + room.walls_m;
+  const Slack slack = measure_slack(rows, 0);
+  gaps.particles_m = listed_gap_m_ + 2 * slack.near_m;
+  if (!walls_stale_) gaps.walls_m = listed_wall_gap_m_ + slack.walls_m;
   return gaps;
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -46,9 +47,10 @@ class ContactLists {
   std::int64_t rebuilds = 0, refreshes = 0;  ///< for the bench
 
  private:
-  /// Ways left within the lists, m; negative: a list no longer holds.
-  struct Room {
+  /// Distances that may still be moved before a list no longer holds, m; negative: it does not.
+  struct Slack {
     double near_m, walls_m;
+    double least_m() const { return std::min(near_m, walls_m); }
   };
   /// Steps the next tight lists should live.
   std::int64_t wanted_life(double largest_radius) const;
@@ -56,15 +58,23 @@ class ContactLists {
   double margin_of(double speed, std::int64_t steps) const;
   void anticipate(Rows& rows, Model& model, const Periods& periods, const WallSurface& surface,
                   std::int64_t steps);
-  Room room_of(const Rows& rows, std::int64_t i, const Vec3& moved) const;
+  Slack slack_of(const Rows& rows, std::int64_t i, const Vec3& moved) const;
   /// The least of any row after `steps` more.
-  Room measure(const Rows& rows, std::int64_t steps) const;
+  Slack measure_slack(const Rows& rows, std::int64_t steps) const;
   /// Throws for a particle that tunnels; finds the usual speed.
   void survey_speeds(const Rows& rows, const Bed& bed);
   void set_reaches(Rows& rows, std::int64_t steps);
+  bool rebuild_is_due(const Slack& slack) const;
+  /// Makes the near lists anew, in rows sorted anew.
+  void rebuild(Rows& rows, const Model& model, const Periods& periods, const Bed& bed, std::int64_t steps);
   void sort_rows(Rows& rows, const Periods& periods, const Bed& bed, double cell_m);
+  /// Hands the springs at walls to the shares that own their rows.
+  void restore_walls(const Rows& rows);
   void choose_skins(const Rows& rows, double largest_radius, std::int64_t steps);
   void find_walls(const Rows& rows, const Periods& periods, const WallSurface& surface);
+  void refresh(Rows& rows, const Model& model, const Periods& periods, const Bed& bed,
+               const WallSurface& surface);
+  int threads() const { return static_cast<int>(shares_.size()); }
   Vec3 drift() const { return mean_velocity_ * (step_s_ * double(steps_since_sort_)); }
 
   const Kernels& kernels_;

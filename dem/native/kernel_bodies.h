@@ -18,7 +18,7 @@ struct KernelBodies {
   template <bool varied>
   static double plane_loop(const RowView& rows, const ContactView& c, const PlaneView& planes,
                            const StepConstants& constants) {
-    const HertzMindlin<V> uniform = Pairs::broadcast(constants.wall);
+    const typename Pairs::Law uniform = Pairs::broadcast(constants.wall);
     V deepest = S::set(-1.0);
     for (std::int64_t k = 0; k < c.count; k += W) {
       V p[4], v[8], plane[8], slide[4];
@@ -27,7 +27,7 @@ struct KernelBodies {
       V h = (p[0] - plane[0]) * plane[4] + (p[1] - plane[1]) * plane[5] + (p[2] - plane[2]) * plane[6];
       const auto behind = S::less(h, V{});
       ContactState<S> state;
-      const V r = varied ? S::load(c.varied + radius_first * c.stride + k) : S::set(constants.radius);
+      const V r = varied ? S::load(Pairs::column(c, BodyColumn::first_radius, k)) : S::set(constants.radius);
       state.overlap = r - S::abs(h);
       if (!S::any(S::less(V{}, state.overlap))) {
         for (auto* s : c.displacement) S::store(s + k, V{});
@@ -42,8 +42,8 @@ struct KernelBodies {
         state.arm_spin[a] = arm * v[4 + a];
         state.displacement[a] = S::load(c.displacement[a] + k);
       }
-      const HertzMindlin<V> law = varied ? Pairs::varied_law(c, k) : uniform;
-      const auto result = contact_force<S>(law, S::set(constants.step_s), state);
+      const typename Pairs::Law law = varied ? Pairs::varied_law(c, k) : uniform;
+      const auto result = ContactLaw::force<S>(law, S::set(constants.step_s), state);
       deepest = S::max(deepest, state.overlap - S::set(deepest_overlap) * r);
       V torque[3];
       for (int a = 0; a < 3; ++a) {
@@ -52,7 +52,7 @@ struct KernelBodies {
       }
       if constexpr (varied) {
         V roll[3];
-        rolling_torque<S>(law, result.elastic, state.normal, v + 4, roll);
+        ContactLaw::rolling_torque<S>(law, result.elastic, state.normal, v + 4, roll);
         for (int a = 0; a < 3; ++a) torque[a] += roll[a];
       }
       I f[3], t[3];
@@ -65,7 +65,7 @@ struct KernelBodies {
 
   static double plane_contacts(const RowView& r, const ContactView& c, const PlaneView& p,
                                const StepConstants& k) {
-    return c.varied ? plane_loop<true>(r, c, p, k) : plane_loop<false>(r, c, p, k);
+    return c.varied.columns ? plane_loop<true>(r, c, p, k) : plane_loop<false>(r, c, p, k);
   }
 
   static bool move(const RowView& rows, std::int64_t begin, std::int64_t end, const MoveConstants& m,
@@ -95,8 +95,8 @@ struct KernelBodies {
       Pairs::template nearest_image<S, periodic>(constants, d);
       V u[3], spin[3];
       S::pair_velocities(rows.velocity, i + k, j + k, u, spin);
-      const V way = S::set(constants.life_s) * S::sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
-      const V reach = d[3] + way;
+      const V approach = S::set(constants.life_s) * S::sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+      const V reach = d[3] + approach;
       unsigned close = S::bits(S::less(d[0] * d[0] + d[1] * d[1] + d[2] * d[2], reach * reach));
       for (int l = 0; l < W; ++l, close >>= 1) {
         first[found] = i[k + l], second[found] = j[k + l], source[found] = std::int32_t(k + l);

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "dem/native/hertz_mindlin.h"
+#include "dem/native/contact_law.h"
 
 namespace granrad::native {
 
@@ -14,6 +14,15 @@ struct RowView {
   float* motion;        ///< [8] the velocity rows rounded, for mixed precision; nullptr in double
 };
 
+/// Columns of what differs from contact to contact (dem/native/contact_columns.h).
+enum class BodyColumn { first_radius, second_radius, count };
+inline constexpr int body_columns = static_cast<int>(BodyColumn::count);
+
+struct VariedView {
+  const double* columns;  ///< nullptr: all contacts are `StepConstants::pair` or `wall`
+  std::int64_t stride;    ///< from one column to the next
+};
+
 /// Contacts between two rows (`count` a multiple of 16), or a row and a plane (of 8); entries up to 64 beyond
 /// it are valid rows (prefetching looks there).
 struct ContactView {
@@ -22,23 +31,7 @@ struct ContactView {
   std::int64_t count;
   double* displacement[3];  ///< tangential springs, m
   float* rounded[3];        ///< the same where the law is in single precision
-  const double*
-      varied;  ///< nullptr: `StepConstants::pair`; else columns of `stride` doubles, see VariedColumn
-  std::int64_t stride;
-};
-
-/// Columns of coefficients of contacts that are not all alike.
-enum VariedColumn {
-  effective_radius,
-  normal,
-  tangential,
-  normal_damping,
-  tangential_damping,
-  friction,
-  rolling,
-  radius_first,
-  radius_second,
-  varied_columns
+  VariedView varied;
 };
 
 /// Walls that act as planes: rows {point, 0, unit normal, 0} of eight and velocity rows {v, 0} of four
@@ -50,7 +43,7 @@ struct PlaneView {
 
 /// What every contact of a step needs.
 struct StepConstants {
-  HertzMindlin<double> pair, wall;  ///< when all particles are alike
+  LawCoefficients pair, wall;  ///< when all particles are alike
   double radius;
   double step_s;
   double life_s;  ///< of the tight lists, from one refresh to the next

@@ -4,17 +4,8 @@
 #include <cmath>
 
 #include "dem/base/constants.h"
-#include "dem/native/materials.h"
-
 namespace granrad::native {
 namespace {
-
-/// Largest force of a single contact within the limits of the model, N.
-double force_bound(const HertzMindlin<double>& c, double overlap, double speed) {
-  const double root = std::sqrt(c.effective_radius * overlap);
-  const double normal = c.normal * root * overlap + c.normal_damping * std::sqrt(root) * speed;
-  return normal * (1 + c.friction) + c.tangential_damping * std::sqrt(root) * speed;
-}
 
 double power_of_two_below(double x) {
   return std::exp2(std::floor(std::log2(x)));
@@ -39,20 +30,21 @@ Model make_model(const Bed& bed, Rows& rows, const Periods& periods, const Vec3&
   double wall_speed = 0;
   for (const auto& w : bed.walls) wall_speed = std::max(wall_speed, norm(w.velocity_m_s));
   const double speed = 2 * std::sqrt(3.0) * fastest_step * m.largest_radius / step_s + wall_speed;
-  double force = 0, friction = 1;
+  double force = 0, moment_ratio = 1;
   for (const auto& material : bed.materials) {
     if (material.youngs_modulus_Pa <= 0) continue;  // a material no particle uses
     const double mass = 4.0 / 3.0 * pi * std::pow(m.largest_radius, 3) * material.density_kg_m3;
-    const auto wall = wall_coefficients({&material, m.largest_radius, mass});
-    force = std::max(force, force_bound(wall, deepest_overlap * m.largest_radius, speed));
-    friction = std::max({friction, material.friction, material.rolling_friction});
+    const ContactBody body{&material, m.largest_radius, mass};
+    const auto law = ContactLaw::coefficients(BodiesInContact::with_wall(body));
+    force = std::max(force, ContactLaw::force_bound(law, deepest_overlap * m.largest_radius, speed));
+    moment_ratio = std::max(moment_ratio, ContactLaw::moment_ratio(material));
   }
   const double size_ratio = m.largest_radius / m.smallest_radius;
   const double neighbours = std::max(16.0, 4 * (1 + size_ratio) * (1 + size_ratio));
   double units = 0x1p62 / (force * neighbours);
   if (precision == Precision::mixed) units = std::min(units, 0x1p50 / force);
   c.force_scale = power_of_two_below(units);
-  c.torque_scale = power_of_two_below(c.force_scale / (2 * friction * m.largest_radius));
+  c.torque_scale = power_of_two_below(c.force_scale / (2 * moment_ratio * m.largest_radius));
 
   const auto kick_of = [&](std::int64_t i) {
     const double push = step_s / rows.mass[i] / c.force_scale;
@@ -62,8 +54,8 @@ Model make_model(const Bed& bed, Rows& rows, const Periods& periods, const Vec3&
   m.kick_row = kick_of(0);
   c.radius = rows.radius[0];
   const ContactBody body{&bed.materials[rows.material[0]], rows.radius[0], rows.mass[0]};
-  c.pair = pair_coefficients(body, body);
-  c.wall = wall_coefficients(body);
+  c.pair = ContactLaw::coefficients(BodiesInContact::particles(body, body));
+  c.wall = ContactLaw::coefficients(BodiesInContact::with_wall(body));
   if (rows.uniform) return m;
   rows.kick.resize(8 * rows.count);
   for (std::int64_t i = 0; i < rows.count; ++i) {

@@ -170,11 +170,9 @@ void NativeEngine::Impl::check_overlaps(const Bed& bed) {
       where = fmt::format("of particles {} and {} at ({:.6g}, {:.6g}, {:.6g}) m", bed.id[rows.bed_index[i]],
                           bed.id[rows.bed_index[j]], p.x, p.y, p.z);
     }
-  throw NumericalError(
-      fmt::format("an overlap {} exceeds {} of the radius (beyond the contact model) try a smaller step, a "
-                  "higher Young's "
-                  "modulus, or starting positions that overlap less",
-                  where, deepest_overlap));
+  throw NumericalError(advised(
+      fmt::format("an overlap {} exceeds {} of the radius (beyond the contact model)", where, deepest_overlap),
+      "try a smaller step, a higher Young's modulus, or starting positions that overlap less"));
 }
 
 NativeEngine::NativeEngine(const Bed&, const Vec3& gravity, double step_s, const EngineOptions& options)
@@ -189,6 +187,10 @@ void NativeEngine::advance(Bed& bed, double until_s) {
   const StepClock clock(bed, e.step_s);
   const std::int64_t last = clock.first_at_or_after(until_s);
   if (last <= bed.step) return;
+  if (bed.size() == 0) {  // nothing to move, and no length to size cells by
+    bed.step = last, bed.time_s = clock.time_s(last);
+    return;
+  }
   e.load(bed);
   std::int64_t step = bed.step;
   while (step < last) {

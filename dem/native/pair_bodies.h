@@ -16,6 +16,7 @@ struct PairBodies {
   using D = typename S::Wide;
   using V = typename S::V;
   using Lane = typename S::Lane;
+  using Law = ContactLaw::Values<V>;
   static constexpr int W = S::width, H = S::halves;
   static constexpr std::int64_t packs = chunk / W;
 
@@ -27,17 +28,15 @@ struct PairBodies {
     bool live;
   };
 
-  GRANRAD_INLINE HertzMindlin<V> broadcast(const HertzMindlin<double>& c) {
-    return {S::set(c.effective_radius),   S::set(c.normal),   S::set(c.tangential), S::set(c.normal_damping),
-            S::set(c.tangential_damping), S::set(c.friction), S::set(c.rolling)};
+  GRANRAD_INLINE Law broadcast(const LawCoefficients& c) {
+    return Law::each([&](int n) { return S::set(c.at(n)); });
   }
-  GRANRAD_INLINE const double* column(const ContactView& c, int n, std::int64_t k) {
-    return c.varied + n * c.stride + k;
+  GRANRAD_INLINE const double* column(const ContactView& c, BodyColumn n, std::int64_t k) {
+    return c.varied.columns + static_cast<int>(n) * c.varied.stride + k;
   }
-  GRANRAD_INLINE HertzMindlin<V> varied_law(const ContactView& c, std::int64_t k) {
-    const auto value = [&](int n) { return S::load(column(c, n, k)); };
-    return {value(effective_radius),   value(normal),   value(tangential), value(normal_damping),
-            value(tangential_damping), value(friction), value(rolling)};
+  GRANRAD_INLINE Law varied_law(const ContactView& c, std::int64_t k) {
+    const double* first = c.varied.columns + body_columns * c.varied.stride + k;
+    return Law::each([&](int n) { return S::load(first + n * c.varied.stride); });
   }
   GRANRAD_INLINE double largest(V v) {
     Lane lane[W];
@@ -70,7 +69,7 @@ struct PairBodies {
       D::pair_positions(rows.position, c.first + from, c.second + from, d);
       nearest_image<D, periodic>(k, d);
       if constexpr (varied)
-        sum = D::load(column(c, radius_first, from)) + D::load(column(c, radius_second, from));
+        sum = D::load(column(c, BodyColumn::first_radius, from)) + D::load(column(c, BodyColumn::second_radius, from));
       for (int a = 0; a < 3; ++a) away[a][h] = d[a];
       square[h] = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
       excess[h] = sum * sum - square[h];
@@ -81,7 +80,7 @@ struct PairBodies {
 
   template <bool varied>
   GRANRAD_INLINE void contact(const ContactView& c, const StepConstants& constants,
-                              const HertzMindlin<V>& uniform, std::int64_t k, const Gathered& in,
+                              const Law& uniform, std::int64_t k, const Gathered& in,
                               Scattered& out, V& deepest) {
     const V half = S::set(0.5);
     const auto* springs = S::springs(c);
@@ -91,7 +90,7 @@ struct PairBodies {
     }
     V ri, rj;
     if constexpr (varied)
-      ri = S::load(column(c, radius_first, k)), rj = S::load(column(c, radius_second, k));
+      ri = S::load(column(c, BodyColumn::first_radius, k)), rj = S::load(column(c, BodyColumn::second_radius, k));
     else
       ri = rj = S::set(constants.radius);
     const V distance = S::sqrt(in.square), inverse = S::set(1.0) / distance;
@@ -104,8 +103,8 @@ struct PairBodies {
       state.arm_spin[a] = varied ? arm_i * in.spin[a] + arm_j * in.other_spin[a] : arm_i * in.spin[a];
       state.displacement[a] = S::load(springs[a] + k);
     }
-    const HertzMindlin<V> law = varied ? varied_law(c, k) : uniform;
-    const auto result = contact_force<S>(law, S::set(constants.step_s), state);
+    const Law law = varied ? varied_law(c, k) : uniform;
+    const auto result = ContactLaw::force<S>(law, S::set(constants.step_s), state);
     const V smaller = varied ? S::select(S::less(ri, rj), ri, rj) : ri;
     deepest = S::max(deepest, state.overlap - S::set(deepest_overlap) * smaller);
     for (int a = 0; a < 3; ++a) S::store(springs[a] + k, state.displacement[a]);
@@ -115,7 +114,7 @@ struct PairBodies {
     if constexpr (varied) {
       V w[3], roll[3];
       for (int a = 0; a < 3; ++a) w[a] = in.spin[a] - in.other_spin[a];
-      rolling_torque<S>(law, result.elastic, state.normal, w, roll);
+      ContactLaw::rolling_torque<S>(law, result.elastic, state.normal, w, roll);
       for (int a = 0; a < 3; ++a) tj[a] = -arm_j * result.moment[a] - roll[a], ti[a] += roll[a];
       to_fixed3(tj, constants.torque_scale, out.other_torque);
     }
@@ -143,7 +142,7 @@ struct PairBodies {
   static double loop(const RowView& rows, const ContactView& c, const StepConstants& constants) {
     Gathered in[packs];
     Scattered out[packs];
-    const HertzMindlin<V> uniform = broadcast(constants.pair);
+    const Law uniform = broadcast(constants.pair);
     const auto* motion = S::motion(rows);
     V deepest = S::set(-1.0);
     for (std::int64_t begin = 0; begin < c.count; begin += chunk) {
@@ -175,7 +174,7 @@ struct PairBodies {
 
   template <bool first_only>
   static double contacts(const RowView& r, const ContactView& c, const StepConstants& k) {
-    if (c.varied)
+    if (c.varied.columns)
       return k.periodic ? loop<true, true, first_only>(r, c, k) : loop<false, true, first_only>(r, c, k);
     return k.periodic ? loop<true, false, first_only>(r, c, k) : loop<false, false, first_only>(r, c, k);
   }

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "dem/native/materials.h"
-
 namespace granrad::native {
 namespace {
 constexpr std::int64_t look_ahead = 64;   ///< entries behind the end that prefetching may read
@@ -110,7 +108,8 @@ void PairList::refresh(const Kernels& kernels, const RowView& rows, const StepCo
   for (const auto n : number_) place_[n] = -1;
   for (std::int64_t k = 0; k < found; ++k) place_[next_number_[k]] = static_cast<std::int32_t>(k);
   number_.swap(next_number_), std::swap(springs_, next_springs_);
-  tight_count_ = found, fresh_ = false, varied_used_ = false;
+  tight_count_ = found, fresh_ = false;
+  varied_.clear();
   find_settled();
 }
 
@@ -126,26 +125,20 @@ void PairList::find_settled() {
 }
 
 void PairList::fill_coefficients(const Rows& rows, const std::vector<Material>& materials) {
-  varied_.assign(varied_columns * padded_, 0);
+  varied_.resize(padded_);
   const auto body = [&](std::int32_t row) -> ContactBody {
     return {&materials[rows.material[row]], rows.radius[row], rows.mass[row]};
   };
   for (std::int64_t k = 0; k < tight_count_; ++k) {
     const auto a = body(first_[k]), b = body(second_[k]);
-    const auto c = pair_coefficients(a, b);
-    const double columns[varied_columns] = {
-        c.effective_radius, c.normal,  c.tangential, c.normal_damping, c.tangential_damping,
-        c.friction,         c.rolling, a.radius_m,   b.radius_m};
-    for (int n = 0; n < varied_columns; ++n) varied_[n * padded_ + k] = columns[n];
+    varied_.put(k, a, b, ContactLaw::coefficients(BodiesInContact::particles(a, b)));
   }
-  varied_used_ = true;
 }
 
 ContactView PairList::view(std::int64_t begin, std::int64_t end) {
-  ContactView v{first_.data() + begin, second_.data() + begin, end - begin, {}, {}, nullptr, padded_};
+  ContactView v{first_.data() + begin, second_.data() + begin, end - begin, {}, {}, varied_.view(begin)};
   for (int a = 0; a < 3; ++a)
     v.displacement[a] = springs_.full(a) + begin, v.rounded[a] = springs_.rounded(a) + begin;
-  if (varied_used_) v.varied = varied_.data() + begin;
   return v;
 }
 
@@ -159,7 +152,7 @@ std::size_t PairList::bytes() const {
   return 4 * (near_i_.capacity() + near_j_.capacity() + first_.capacity() + second_.capacity() +
               number_.capacity() + next_number_.capacity() + found_first_.capacity() +
               found_second_.capacity() + found_number_.capacity() + place_.capacity()) +
-         springs_.bytes() + next_springs_.bytes() + 8 * varied_.capacity();
+         springs_.bytes() + next_springs_.bytes() + varied_.bytes();
 }
 
 }  // namespace granrad::native

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dem/native/aligned.h"
+#include "dem/native/contact_columns.h"
 #include "dem/native/grid.h"
 #include "dem/native/kernels.h"
 #include "dem/native/rows.h"
@@ -49,7 +50,7 @@ class PairList {
   /// or, after finish_near, from `memories`.
   void refresh(const Kernels& kernels, const RowView& rows, const StepConstants& constants,
                const MemoryTable& memories);
-  /// Fills the coefficient columns of contacts that are not all alike.
+  /// Fills the columns of contacts that are not all alike.
   void fill_coefficients(const Rows& rows, const std::vector<Material>& materials);
   ContactView view() { return view(0, padded_); }
   /// The tight contacts in blocks, to be worked on one after the other: no row before settled_before(b) has a
@@ -95,12 +96,11 @@ class PairList {
   AlignedVector<std::int32_t> number_, next_number_;  ///< of tight pairs in the near list
   AlignedVector<std::int32_t> place_;                 ///< of near pairs in the tight list, or -1
   SpringColumns springs_, next_springs_;
-  AlignedVector<double> varied_;
+  ContactColumns varied_;
   std::vector<std::int64_t> settled_before_;  ///< by block
   std::int64_t near_count_ = 0, tight_count_ = 0, padded_ = 0;
   std::int32_t idle_row_ = 0;
   bool fresh_ = true;  ///< near numbers have changed: springs come from the memories
-  bool varied_used_ = false;
 };
 
 }  // namespace granrad::native

@@ -34,8 +34,9 @@ const Kernels& select_kernels() {
   const bool known = wish.empty() || wish == "avx512" || wish == "avx2" || wish == "baseline";
   const bool possible = (wish != "avx512" || machine_has_avx512()) && (wish != "avx2" || machine_has_avx2());
   if (!known || !possible)
-    throw InputError(fmt::format("GRANRAD_SIMD = {} ({}) use avx512, avx2 or baseline, or leave it unset",
-                                 wish, known ? "this machine lacks it" : "unknown instruction set"));
+    throw InputError(advised(fmt::format("GRANRAD_SIMD = {} ({})", wish,
+                                         known ? "this machine lacks it" : "unknown instruction set"),
+                             "use avx512, avx2 or baseline, or leave it unset"));
 #if defined(GRANRAD_X86)
   if (wish == "avx512" || (wish.empty() && machine_has_avx512())) return avx512_kernels();
   if (wish == "avx2" || (wish.empty() && machine_has_avx2())) return avx2_kernels();

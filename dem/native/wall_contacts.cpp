@@ -3,24 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dem/native/materials.h"
-
 namespace granrad::native {
 namespace {
 
 using Touch = WallSurface::Touch;
+using Kind = WallSurface::Kind;
 
 /// Contact points closer than this fraction of the radius are one.
 constexpr double same_point = 1e-4;
 /// Adjacent faces bent by less than one degree are one smooth wall.
 constexpr double smooth_bend = 0.99985;
 
-/// Of two touches that report the same wall, the one of lower rank (face, edge, vertex), then the deeper,
-/// stays.
+/// Of two touches that report the same wall, the face stays before the edge before the vertex, then the deeper.
 bool repeats(const WallSurface& surface, const Touch& t, const Touch& kept, double tolerance) {
   if (t.feature == kept.feature || norm(t.point - kept.point) < tolerance) return true;
-  if (kept.rank == 0 && t.rank > 0) return std::abs(dot(t.point - kept.point, kept.normal)) < tolerance;
-  return kept.rank == 0 && t.rank == 0 && dot(t.normal, kept.normal) > smooth_bend &&
+  if (kept.kind == Kind::face && t.kind != Kind::face) return std::abs(dot(t.point - kept.point, kept.normal)) < tolerance;
+  return kept.kind == Kind::face && t.kind == Kind::face && dot(t.normal, kept.normal) > smooth_bend &&
          surface.adjacent(t.feature, kept.feature);
 }
 
@@ -55,7 +53,7 @@ std::vector<Touch> distinct_touches(const WallSurface& surface, const std::int32
       if (surface.stands(*f) && surface.distance(*f, p) < radius) all.push_back(surface.nearest(*f, p));
   }
   std::sort(all.begin(), all.end(), [](const Touch& a, const Touch& b) {
-    if (a.rank != b.rank) return a.rank < b.rank;
+    if (a.kind != b.kind) return a.kind < b.kind;
     return a.distance_m != b.distance_m ? a.distance_m < b.distance_m : a.feature < b.feature;
   });
   for (const auto& t : all) {
@@ -125,14 +123,11 @@ void WallContacts::finish_planes(const Rows& rows, const std::vector<Material>& 
   const auto padded = rows_.size();
   varied_.clear();
   if (rows.uniform) return;
-  varied_.assign(varied_columns * padded, 0);
+  varied_.resize(static_cast<std::int64_t>(padded));
   for (std::int64_t k = 0; k < plane_count_; ++k) {
     const auto i = rows_[k];
-    const auto c = wall_coefficients({&materials[rows.material[i]], rows.radius[i], rows.mass[i]});
-    const double columns[varied_columns] = {c.effective_radius,   c.normal,   c.tangential, c.normal_damping,
-                                            c.tangential_damping, c.friction, c.rolling,    rows.radius[i],
-                                            rows.radius[i]};
-    for (int n = 0; n < varied_columns; ++n) varied_[n * padded + k] = columns[n];
+    const ContactBody body{&materials[rows.material[i]], rows.radius[i], rows.mass[i]};
+    varied_.put(k, body, body, ContactLaw::coefficients(BodiesInContact::with_wall(body)));
   }
 }
 
@@ -188,9 +183,8 @@ double WallContacts::add_forces(const Kernels& kernels, const WallSurface& surfa
   double deepest = -1;
   if (plane_count_ > 0) {
     const auto padded = static_cast<std::int64_t>(rows_.size());
-    ContactView view{rows_.data(), facets_.data(), padded, {}, {}, nullptr, padded};
+    ContactView view{rows_.data(), facets_.data(), padded, {}, {}, varied_.view(0)};
     for (int a = 0; a < 3; ++a) view.displacement[a] = displacement_[a].data();
-    if (!rows.uniform) view.varied = varied_.data();
     deepest =
         kernels.plane_contacts(rows.view(), view, {surface.plane_rows(), surface.velocity_rows()}, constants);
   }
@@ -199,23 +193,10 @@ double WallContacts::add_forces(const Kernels& kernels, const WallSurface& surfa
   return deepest;
 }
 
-double WallContacts::border_forces(const WallSurface& surface, Rows& rows, const Periods& periods,
-                                   const StepConstants& constants, const std::vector<Material>& materials,
-                                   Border& border) {
-  const auto i = border.row;
-  const Vec3 p = periods.wrapped(rows.position_of(i)), v = rows.velocity_of(i), w = rows.spin_of(i);
-  const double radius = rows.radius[i];
-  const auto touches = distinct_touches(surface, border_facets_.data() + border.facets_begin,
-                                        border_facets_.data() + border.facets_end, p, radius);
-  if (touches.empty()) {
-    border.springs.clear();
-    return -1;
-  }
-  const auto law =
-      rows.uniform ? constants.wall : wall_coefficients({&materials[rows.material[i]], radius, rows.mass[i]});
-  std::vector<Spring> old = std::move(border.springs);
-  border.springs.clear();
-  // A spring stays with its feature; what rolled from one feature to the next takes its spring along.
+/// A spring stays with its feature; what rolled from one feature to the next takes its spring along.
+std::vector<WallContacts::Spring> WallContacts::carry_springs(const WallSurface& surface,
+                                                              const std::vector<Touch>& touches,
+                                                              std::vector<Spring> old) {
   const auto take = [&](auto matches) {
     Vec3 s;
     const auto at = std::find_if(old.begin(), old.end(), matches);
@@ -225,43 +206,69 @@ double WallContacts::border_forces(const WallSurface& surface, Rows& rows, const
   const auto known = [&](std::int64_t feature) {
     return std::any_of(old.begin(), old.end(), [&](const Spring& s) { return s.feature == feature; });
   };
-  std::vector<Spring> next;
+  std::vector<Spring> springs;
   std::vector<bool> is_new;
   for (const auto& t : touches) {
     is_new.push_back(!known(t.feature));
-    next.push_back({t.feature, take([&](const Spring& s) { return s.feature == t.feature; })});
+    springs.push_back({t.feature, take([&](const Spring& s) { return s.feature == t.feature; })});
   }
   for (std::size_t k = 0; k < touches.size(); ++k)
     if (is_new[k])
-      next[k].displacement =
+      springs[k].displacement =
           take([&](const Spring& s) { return surface.adjacent(s.feature, touches[k].feature); });
+  return springs;
+}
 
+/// Adds the force of one touch, with its spring; returns overlap - deepest_overlap x radius.
+double WallContacts::add_touch(const WallSurface& surface, Rows& rows, std::int32_t i,
+                               const LawCoefficients& law, const StepConstants& constants, const Touch& t,
+                               Vec3& spring) {
+  const double radius = rows.radius[i];
+  const Vec3 u = rows.velocity_of(i) - surface.velocity(t.facet), w = rows.spin_of(i);
+  ContactState<ScalarPack> c;
+  c.overlap = radius - t.distance_m;
+  const double arm = radius - 0.5 * c.overlap;
+  for (int a = 0; a < 3; ++a) {
+    c.normal[a] = t.normal[a], c.velocity[a] = u[a], c.arm_spin[a] = arm * w[a];
+    c.displacement[a] = spring[a];
+  }
+  const auto result = ContactLaw::force<ScalarPack>(law, constants.step_s, c);
+  double torque[3], roll[3];
+  for (int a = 0; a < 3; ++a) torque[a] = -arm * result.moment[a];
+  if (!rows.uniform) {
+    const double spin[3] = {w.x, w.y, w.z};
+    ContactLaw::rolling_torque<ScalarPack>(law, result.elastic, c.normal, spin, roll);
+    for (int a = 0; a < 3; ++a) torque[a] += roll[a];
+  }
+  for (int a = 0; a < 3; ++a) {
+    rows.force[8 * i + a] += ScalarPack::to_fixed(result.force[a] * constants.force_scale);
+    rows.force[8 * i + 4 + a] += ScalarPack::to_fixed(torque[a] * constants.torque_scale);
+    spring[a] = c.displacement[a];
+  }
+  return c.overlap - deepest_overlap * radius;
+}
+
+double WallContacts::border_forces(const WallSurface& surface, Rows& rows, const Periods& periods,
+                                   const StepConstants& constants, const std::vector<Material>& materials,
+                                   Border& border) {
+  const auto i = border.row;
+  const Vec3 p = periods.wrapped(rows.position_of(i));
+  const auto touches = distinct_touches(surface, border_facets_.data() + border.facets_begin,
+                                        border_facets_.data() + border.facets_end, p, rows.radius[i]);
+  if (touches.empty()) {
+    border.springs.clear();
+    return -1;
+  }
+  const ContactBody body{&materials[rows.material[i]], rows.radius[i], rows.mass[i]};
+  const auto law =
+      rows.uniform ? constants.wall : ContactLaw::coefficients(BodiesInContact::with_wall(body));
+  auto springs = carry_springs(surface, touches, std::move(border.springs));
+  border.springs.clear();
   double deepest = -1;
   for (std::size_t k = 0; k < touches.size(); ++k) {
-    const Touch& t = touches[k];
-    ContactState<ScalarPack> c;
-    c.overlap = radius - t.distance_m;
-    const double arm = radius - 0.5 * c.overlap;
-    const Vec3 u = v - surface.velocity(t.facet);
-    for (int a = 0; a < 3; ++a) {
-      c.normal[a] = t.normal[a], c.velocity[a] = u[a], c.arm_spin[a] = arm * w[a];
-      c.displacement[a] = next[k].displacement[a];
-    }
-    const auto result = contact_force<ScalarPack>(law, constants.step_s, c);
-    deepest = std::max(deepest, c.overlap - deepest_overlap * radius);
-    double torque[3], roll[3];
-    for (int a = 0; a < 3; ++a) torque[a] = -arm * result.moment[a];
-    if (!rows.uniform) {
-      const double spin[3] = {w.x, w.y, w.z};
-      rolling_torque<ScalarPack>(law, result.elastic, c.normal, spin, roll);
-      for (int a = 0; a < 3; ++a) torque[a] += roll[a];
-    }
-    for (int a = 0; a < 3; ++a) {
-      rows.force[8 * i + a] += ScalarPack::to_fixed(result.force[a] * constants.force_scale);
-      rows.force[8 * i + 4 + a] += ScalarPack::to_fixed(torque[a] * constants.torque_scale);
-      next[k].displacement[a] = c.displacement[a];
-    }
-    if (!(next[k].displacement == Vec3{})) border.springs.push_back(next[k]);
+    auto& s = springs[k];
+    deepest = std::max(deepest, add_touch(surface, rows, i, law, constants, touches[k], s.displacement));
+    if (!(s.displacement == Vec3{})) border.springs.push_back(s);
   }
   return deepest;
 }

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "dem/native/contact_columns.h"
 #include "dem/native/grid.h"
 #include "dem/native/kernels.h"
 #include "dem/native/rows.h"
@@ -68,6 +69,12 @@ class WallContacts {
   void add_plane(std::int32_t row, std::int32_t facet, std::int64_t feature, std::vector<WallMemory>& kept);
   void finish_planes(const Rows& rows, const std::vector<Material>& materials, std::int32_t idle_row,
                      std::int32_t idle_plane);
+  static std::vector<Spring> carry_springs(const WallSurface& surface,
+                                           const std::vector<WallSurface::Touch>& touches,
+                                           std::vector<Spring> old);
+  static double add_touch(const WallSurface& surface, Rows& rows, std::int32_t row,
+                          const LawCoefficients& law, const StepConstants& constants,
+                          const WallSurface::Touch& touch, Vec3& spring);
   double border_forces(const WallSurface& surface, Rows& rows, const Periods& periods,
                        const StepConstants& constants, const std::vector<Material>& materials,
                        Border& border);
@@ -77,7 +84,8 @@ class WallContacts {
   std::vector<std::int32_t> border_facets_;
   std::vector<std::int32_t> rows_, facets_;  ///< plane contacts
   std::vector<std::int64_t> features_;
-  AlignedVector<double> displacement_[3], varied_;
+  AlignedVector<double> displacement_[3];
+  ContactColumns varied_;
   std::int64_t plane_count_ = 0;
   std::vector<WallMemory> memories_;
   bool restored_ = false;

@@ -82,8 +82,8 @@ void WallSurface::join_sides() {
       const auto ends = std::minmax(a, b);
       const auto [at, added] = edge_between.try_emplace(ends, static_cast<std::int32_t>(edges_.size()));
       if (added) {
-        const Vec3 start = vertices_[ends.first], way = vertices_[ends.second] - start;
-        edges_.push_back({{ends.first, ends.second}, start, normalized(way), norm(way), {}});
+        const Vec3 start = vertices_[ends.first], along = vertices_[ends.second] - start;
+        edges_.push_back({{ends.first, ends.second}, start, normalized(along), norm(along), {}});
         edges_of_vertex_[a].push_back(at->second);
         edges_of_vertex_[b].push_back(at->second);
       }
@@ -147,7 +147,8 @@ void WallSurface::fill_rows(const std::vector<Wall>& walls) {
     for (const double x : {plane.point.x, plane.point.y, plane.point.z, 0.0, plane.normal.x, plane.normal.y,
                            plane.normal.z, 0.0})
       plane_rows_.push_back(x);
-    const Vec3& v = walls[f.wall].velocity_m_s;
+    const Vec3& given = walls[f.wall].velocity_m_s;
+    const Vec3 v = given - f.normal * dot(given, f.normal);  // a surface slides, it does not move
     for (const double x : {v.x, v.y, v.z, 0.0}) velocity_rows_.push_back(x);
   }
   for (const double x : {1e9, 1e9, 1e9, 0.0, 1.0, 0.0, 0.0, 0.0}) plane_rows_.push_back(x);
@@ -226,31 +227,31 @@ void WallSurface::touches(std::int32_t f, const Vec3& p, double reach_m, std::ve
   const auto face = [&] {
     const Facet& plane = facets_[facet.group];
     const Vec3 normal = h < 0 ? plane.normal * -1.0 : plane.normal;
-    out.push_back({facet.group, f, 0, p - plane.normal * h, normal, std::abs(h)});
+    out.push_back({facet.group, f, Kind::face, p - plane.normal * h, normal, std::abs(h)});
   };
   if (foot_inside(f, p)) return face();
-  const auto corner = [&](std::int64_t feature, int rank, const Vec3& point) {
+  const auto corner = [&](std::int64_t feature, Kind kind, const Vec3& point) {
     const Vec3 away = p - point;
     const double distance = norm(away);
     if (distance < reach_m && distance > 0)
-      out.push_back({feature, f, rank, point, away * (1 / distance), distance});
+      out.push_back({feature, f, kind, point, away * (1 / distance), distance});
   };
   for (std::size_t k = 0; k < facet.sides.size(); ++k) {
     const Side& side = facet.sides[k];
     const Edge& e = edges_[side.edge];
     if (edge_is_minimum(side.edge, p)) {
       if (side.smooth) return face();
-      corner(edge_feature(side.edge), 1, e.start + e.direction * e.along(p));
+      corner(edge_feature(side.edge), Kind::edge, e.start + e.direction * e.along(p));
     }
     const auto v = facet.corners[k];
     if (!vertex_is_minimum(v, p)) continue;
     if (vertex_is_flat_[v]) return face();
-    corner(vertex_feature(v), 2, vertices_[v]);
+    corner(vertex_feature(v), Kind::vertex, vertices_[v]);
   }
 }
 
 WallSurface::Touch WallSurface::nearest(std::int32_t f, const Vec3& p) const {
-  Touch best{facets_[f].group, f, 1, {}, {}, infinity};
+  Touch best{facets_[f].group, f, Kind::edge, {}, {}, infinity};
   for (const auto& side : facets_[f].sides) {
     const Edge& e = edges_[side.edge];
     const Vec3 point = e.start + e.direction * std::clamp(e.along(p), 0.0, e.length);

@@ -22,11 +22,12 @@ class WallSurface {
  public:
   explicit WallSurface(const std::vector<Wall>& walls);
 
-  /// A local minimum of the distance.
+  /// What has a local minimum of the distance; of two that report one place, the earlier here counts.
+  enum class Kind { face, edge, vertex };
   struct Touch {
     std::int64_t feature;
     std::int32_t facet;  ///< one that has the feature
-    int rank;            ///< 0 face, 1 edge, 2 vertex
+    Kind kind;
     Vec3 point;
     Vec3 normal;  ///< from the surface to the centre
     double distance_m;

@@ -13,28 +13,13 @@ namespace granrad {
 namespace {
 
 Material read_material(TomlTable table, const std::string& default_name) {
-  const auto positive = [](const char* unit) {
-    return NumberRule{.unit = unit, .min = 0, .min_exclusive = true};
-  };
-  const NumberRule fraction{.min = 0, .max = 1, .min_exclusive = true};
   table.add_keys_from_file("file");
   Material m;
   m.name = table.string("name", default_name);
-  m.density_kg_m3 = table.number("density_kg_m3", positive("kg/m3"));
-  m.specific_heat_J_kgK = table.number("specific_heat_J_kgK", positive("J/(kg K)"));
-  m.conductivity_W_mK = table.number("conductivity_W_mK", positive("W/(m K)"));
-  m.youngs_modulus_Pa = table.number("youngs_modulus_Pa", positive("Pa"));
-  m.real_youngs_modulus_Pa = table.number("real_youngs_modulus_Pa", positive("Pa"), m.youngs_modulus_Pa);
-  m.poisson_ratio = table.number(
-      "poisson_ratio", {.min = 0, .max = 0.5, .max_exclusive = true, .why = "0.5 is incompressible"});
-  NumberRule restitution = fraction;
-  restitution.why = "part of the normal speed kept in a collision";
-  m.restitution = table.number("restitution", restitution);
-  m.friction = table.number("friction", {.min = 0});
-  m.rolling_friction = table.number("rolling_friction", {.min = 0}, 0.0);
-  NumberRule emissivity = fraction;
-  emissivity.why = "grey diffuse surface";
-  m.emissivity = table.number("emissivity", emissivity, 1.0);
+  for (const auto& n : material_numbers()) {
+    const auto standard = n.standard_like ? std::optional(m.*n.standard_like) : n.standard;
+    m.*n.value = standard ? table.number(n.key, n.rule, *standard) : table.number(n.key, n.rule);
+  }
   return m;
 }
 

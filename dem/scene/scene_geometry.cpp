@@ -1,8 +1,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "dem/base/error.h"
+#include "dem/bed/wall_distance.h"
 #include "dem/io/import_stl.h"
 #include "dem/scene/scene_parts.h"
 
@@ -52,6 +54,7 @@ class GeometryReader {
         Wall wall = walls[face];
         wall.contact = !(scene_.feed.kind == FeedSettings::Kind::plug && face / 2 == 2);
         read_properties(table, wall);
+        refuse_moving_across(table, wall);
         scene_.walls.push_back(std::move(wall));
       } else if (table.present()) {
         tables.problem(walls[face].name, has_walls ? "this wall does not exist: the box is periodic across it"
@@ -153,7 +156,26 @@ class GeometryReader {
       const auto same = [&](const Wall& other) { return other.name == wall.name; };
       if (std::any_of(scene_.walls.begin(), scene_.walls.end(), same))
         table.problem("name", fmt::format("another wall is called {}; names must differ", wall.name));
+      refuse_moving_across(table, wall);
       if (!wall.vertices.empty()) scene_.walls.push_back(std::move(wall));
+    }
+  }
+
+  /// A wall stands still and its surface slides, as a belt's: a velocity across it would push what it touches
+  /// without ever arriving. Rounded components of a slanted belt pass; engines use the part in the surface.
+  static void refuse_moving_across(TomlTable& table, const Wall& wall) {
+    constexpr double rounding = 1e-3;
+    const Vec3& v = wall.velocity_m_s;
+    if (!wall.contact || norm(v) == 0) return;
+    for (const auto& face : faces_of(wall)) {
+      const double across = std::abs(dot(face.normal, v));
+      if (across <= rounding * norm(v)) continue;
+      table.problem("velocity_m_s",
+                    advised(fmt::format("{:.3g} m/s of it point across the surface of wall {}, which does not move",
+                                        across, wall.name),
+                            "give a velocity along the surface (a belt), and faces that are no belt a wall of "
+                            "their own"));
+      return;
     }
   }
 
