@@ -14,9 +14,17 @@ class ContactColumns {
     contacts_ = contacts;
     columns_.assign((body_columns + LawCoefficients::count) * contacts, 0);
   }
-  void put(std::int64_t k, const ContactBody& first, const ContactBody& second, const LawCoefficients& law) {
+  struct Side {
+    double radius_m;
+    FixedScales scales;
+  };
+  void put(std::int64_t k, const Side& first, const Side& second, const LawCoefficients& law) {
     at(BodyColumn::first_radius, k) = first.radius_m;
     at(BodyColumn::second_radius, k) = second.radius_m;
+    at(BodyColumn::first_force_scale, k) = first.scales.force;
+    at(BodyColumn::second_force_scale, k) = second.scales.force;
+    at(BodyColumn::first_torque_scale, k) = first.scales.torque;
+    at(BodyColumn::second_torque_scale, k) = second.scales.torque;
     for (int n = 0; n < LawCoefficients::count; ++n) columns_[(body_columns + n) * contacts_ + k] = law.at(n);
   }
   /// The columns from contact `begin` on.

@@ -139,7 +139,8 @@ void ContactLists::sort_rows(Rows& rows, const Periods& periods, const Bed& bed,
   };
   permute(rows.position, 4), permute(rows.velocity, 8), permute(rows.bed_index, 1), permute(skins_.half_m, 1);
   if (!rows.uniform)
-    permute(rows.kick, 8), permute(rows.radius, 1), permute(rows.mass, 1), permute(rows.material, 1);
+    permute(rows.kick, 8), permute(rows.scales, 1), permute(rows.radius, 1), permute(rows.mass, 1),
+        permute(rows.material, 1);
   for (std::int64_t i = 0; i < rows.count; ++i) rows.row_of[rows.bed_index[i]] = static_cast<std::int32_t>(i);
   near_origin_.resize(3 * rows.count);
   for (std::int64_t i = 0; i < rows.count; ++i)

@@ -16,10 +16,10 @@ struct KernelBodies {
   }
 
   template <bool varied>
-  static double plane_loop(const RowView& rows, const ContactView& c, const PlaneView& planes,
-                           const StepConstants& constants) {
+  static WorstContact plane_loop(const RowView& rows, const ContactView& c, const PlaneView& planes,
+                                 const StepConstants& constants) {
     const typename Pairs::Law uniform = Pairs::broadcast(constants.wall);
-    V deepest = S::set(-1.0);
+    typename Pairs::Worst worst;
     for (std::int64_t k = 0; k < c.count; k += W) {
       V p[4], v[8], plane[8], slide[4];
       S::columns4(rows.position, c.first + k, p);
@@ -44,7 +44,7 @@ struct KernelBodies {
       }
       const typename Pairs::Law law = varied ? Pairs::varied_law(c, k) : uniform;
       const auto result = ContactLaw::force<S>(law, S::set(constants.step_s), state);
-      deepest = S::max(deepest, state.overlap - S::set(deepest_overlap) * r);
+      worst.beyond = S::max(worst.beyond, state.overlap - S::set(deepest_overlap) * r);
       V torque[3];
       for (int a = 0; a < 3; ++a) {
         S::store(c.displacement[a] + k, state.displacement[a]);
@@ -55,16 +55,21 @@ struct KernelBodies {
         ContactLaw::rolling_torque<S>(law, result.elastic, state.normal, v + 4, roll);
         for (int a = 0; a < 3; ++a) torque[a] += roll[a];
       }
+      const auto scale = [&](BodyColumn n, double uniform_scale) {
+        return varied ? S::load(Pairs::column(c, n, k)) : S::set(uniform_scale);
+      };
+      const V force_scale = scale(BodyColumn::first_force_scale, constants.scales.force);
+      worst.force = S::max(worst.force, force_scale * Pairs::largest_component(result.force));
       I f[3], t[3];
-      to_fixed3(result.force, S::set(constants.force_scale), f);
-      to_fixed3(torque, S::set(constants.torque_scale), t);
+      to_fixed3(result.force, force_scale, f);
+      to_fixed3(torque, scale(BodyColumn::first_torque_scale, constants.scales.torque), t);
       S::add_one(rows.force, c.first + k, f, t);
     }
-    return Pairs::largest(deepest);
+    return {Pairs::largest(worst.beyond), Pairs::largest(worst.force)};
   }
 
-  static double plane_contacts(const RowView& r, const ContactView& c, const PlaneView& p,
-                               const StepConstants& k) {
+  static WorstContact plane_contacts(const RowView& r, const ContactView& c, const PlaneView& p,
+                                     const StepConstants& k) {
     return c.varied.columns ? plane_loop<true>(r, c, p, k) : plane_loop<false>(r, c, p, k);
   }
 

@@ -15,7 +15,15 @@ struct RowView {
 };
 
 /// Columns of what differs from contact to contact (dem/native/contact_columns.h).
-enum class BodyColumn { first_radius, second_radius, count };
+enum class BodyColumn {
+  first_radius,
+  second_radius,
+  first_force_scale,
+  second_force_scale,
+  first_torque_scale,
+  second_torque_scale,
+  count
+};
 inline constexpr int body_columns = static_cast<int>(BodyColumn::count);
 
 struct VariedView {
@@ -41,6 +49,11 @@ struct PlaneView {
   const double* velocity;
 };
 
+/// Fixed-point units per N and per N m of what acts on one particle (powers of two).
+struct FixedScales {
+  double force = 1, torque = 1;
+};
+
 /// What every contact of a step needs.
 struct StepConstants {
   LawCoefficients pair, wall;  ///< when all particles are alike
@@ -49,7 +62,7 @@ struct StepConstants {
   double life_s;  ///< of the tight lists, from one refresh to the next
   bool periodic;
   double period[3], inverse_period[3];  ///< zero where not periodic
-  double force_scale, torque_scale;     ///< fixed-point units per N and per N m (powers of two)
+  FixedScales scales;                   ///< of every particle where all are alike
 };
 
 /// What moving the particles needs. kick rows {dt/m x3, 0, dt/I x3, 0} divided by the fixed-point scales.
@@ -64,10 +77,21 @@ struct MoveConstants {
 /// An overlap deeper than this fraction of the (smaller) radius is beyond the model.
 inline constexpr double deepest_overlap = 0.5;
 
-using PairKernel = double (*)(const RowView&, const ContactView&, const StepConstants&);
+/// The worst contact met in a step.
+struct WorstContact {
+  double beyond_m = -1;  ///< largest overlap - deepest_overlap x (smaller) radius
+  double force_units =
+      0;  ///< largest component of a force, in the finer of its two bodies' fixed-point units
+
+  [[gnu::always_inline]] inline void include(const WorstContact& w) {
+    beyond_m = w.beyond_m > beyond_m ? w.beyond_m : beyond_m;
+    force_units = w.force_units > force_units ? w.force_units : force_units;
+  }
+};
+
+using PairKernel = WorstContact (*)(const RowView&, const ContactView&, const StepConstants&);
 
 /// The inner loops, compiled once for each instruction set from kernel_bodies.h and pair_bodies.h.
-/// Contact functions return the largest `overlap - deepest_overlap x radius` met, m.
 struct Kernels {
   const char* name;
   /// Adds forces to both rows; `pair_contacts_first` to the first row only (the second has another owner).
@@ -75,7 +99,7 @@ struct Kernels {
   /// The same with the law in single precision and velocities from `RowView::motion`.
   PairKernel mixed_contacts, mixed_contacts_first;
   /// `second` numbers planes.
-  double (*plane_contacts)(const RowView&, const ContactView&, const PlaneView&, const StepConstants&);
+  WorstContact (*plane_contacts)(const RowView&, const ContactView&, const PlaneView&, const StepConstants&);
   /// v += F dt/m + g dt, omega likewise (and `motion`), x += v dt/2, forces cleared, rows [begin, end).
   /// Unless `last`, x moves another half step, to the middle of the next one. True if a speed limit is broken
   /// (or not a number).

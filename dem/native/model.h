@@ -17,12 +17,16 @@ struct Model {
   StepConstants constants{};
   MoveConstants move{};
   alignas(64) std::array<double, 8> kick_row{};
-  double smallest_radius = 0, largest_radius = 0;
+  double largest_radius = 0;
+  double largest_force_units = 0;  ///< no component of a contact force may exceed it
 };
 
-/// In mixed precision a single force stays below 2^51 units, which keeps all 24 bits of a force of 1e-6 of
-/// the largest. Also fills rows.kick where particles differ. The fixed-point scale leaves room for as many
-/// contacts as fit around the largest sphere, each at the deepest overlap and the highest speed allowed.
+/// Forces are summed as integers, so that no order matters. Each radius has its own unit (a power of two): the
+/// sum of as many contacts as fit around a sphere, each at the deepest overlap and the highest speed that a
+/// sphere of its size may have, stays below 2^62. In mixed precision a single force stays below 2^51 units,
+/// which keeps all 24 bits of a force of 1e-6 of the largest. A force beyond that is found in the step that
+/// makes it (`largest_force_units`); a weight too small for its unit is refused here (InputError).
+/// Also fills rows.scales and, where particles differ, rows.kick.
 Model make_model(const Bed& bed, Rows& rows, const Periods& periods, const Vec3& gravity_m_s2, double step_s,
                  Precision precision = Precision::full);
 

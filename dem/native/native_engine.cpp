@@ -119,14 +119,14 @@ std::int64_t NativeEngine::Impl::run(std::int64_t steps, bool finishes, bool& li
   {
     Share& share = shares[omp_get_thread_num()];
     const RowView view = rows.view();
-    double deepest = -1;
+    WorstContact worst;
     bool stop = false;
     rows.round_motion(share.range.begin, share.range.end);
     barrier.wait();
     for (std::int64_t k = 0; k < steps && !stop; ++k) {
-      deepest = std::max(
-          {deepest, first_contacts(view, share.cross.view(), model.constants),
-           share.walls.add_forces(kernels, *surface, rows, *periods, model.constants, transfer.materials())});
+      worst.include(first_contacts(view, share.cross.view(), model.constants));
+      worst.include(
+          share.walls.add_forces(kernels, *surface, rows, *periods, model.constants, transfer.materials()));
       if (shared) barrier.wait();  // now no one else needs these rows where they are
       bool& too_fast = share.too_fast[k & 1];
       too_fast = false;
@@ -136,7 +136,7 @@ std::int64_t NativeEngine::Impl::run(std::int64_t steps, bool finishes, bool& li
         moved = end;
       };
       for (std::int64_t b = 0; b < share.own.blocks(); ++b) {
-        deepest = std::max(deepest, all_contacts(view, share.own.view_of(b), model.constants));
+        worst.include(all_contacts(view, share.own.view_of(b), model.constants));
         move_rows_before(std::min(share.own.settled_before(b), share.range.end));
       }
       move_rows_before(share.range.end);
@@ -145,14 +145,23 @@ std::int64_t NativeEngine::Impl::run(std::int64_t steps, bool finishes, bool& li
 #pragma omp master
       done = k + 1, limit_broken = stop;
     }
-    share.deepest = deepest;
+    share.worst = worst;
   }
   return done;
 }
 
 void NativeEngine::Impl::check_overlaps(const Bed& bed) {
   const auto& shares = lists->shares();
-  if (std::none_of(shares.begin(), shares.end(), [](const Share& s) { return s.deepest > 0; })) return;
+  WorstContact all;
+  for (const auto& s : shares) all.include(s.worst);
+  if (!(all.force_units <= model.largest_force_units))
+    throw NumericalError(advised(
+        fmt::format(
+            "a contact force near t = {:.6g} s exceeds {:.3g} times what bodies of its size bear at half "
+            "a radius of overlap (fast bodies or spins, for a step of {:.3g} s)",
+            bed.time_s, all.force_units / model.largest_force_units, step_s),
+        "try a smaller step, or slower bodies at the start"));
+  if (all.beyond_m <= 0) return;
   std::string where = "near a wall";
   double worst = 0;
   for (const auto& s : shares)
@@ -170,9 +179,10 @@ void NativeEngine::Impl::check_overlaps(const Bed& bed) {
       where = fmt::format("of particles {} and {} at ({:.6g}, {:.6g}, {:.6g}) m", bed.id[rows.bed_index[i]],
                           bed.id[rows.bed_index[j]], p.x, p.y, p.z);
     }
-  throw NumericalError(advised(
-      fmt::format("an overlap {} exceeds {} of the radius (beyond the contact model)", where, deepest_overlap),
-      "try a smaller step, a higher Young's modulus, or starting positions that overlap less"));
+  throw NumericalError(
+      advised(fmt::format("an overlap {} exceeds {} of the radius (beyond the contact model)", where,
+                          deepest_overlap),
+              "try a smaller step, a higher Young's modulus, or starting positions that overlap less"));
 }
 
 NativeEngine::NativeEngine(const Bed&, const Vec3& gravity, double step_s, const EngineOptions& options)

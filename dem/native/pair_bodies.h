@@ -24,8 +24,11 @@ struct PairBodies {
     V away[3], square, excess, velocity[3], spin[3], other_spin[3];
   };
   struct Scattered {
-    typename D::I force[H][3], torque[H][3], other_torque[H][3];
+    typename D::I force[H][3], torque[H][3], other_force[H][3], other_torque[H][3];
     bool live;
+  };
+  struct Worst {
+    V beyond = S::set(-1.0), force = S::set(0.0);
   };
 
   GRANRAD_INLINE Law broadcast(const LawCoefficients& c) {
@@ -45,16 +48,21 @@ struct PairBodies {
     for (double x : lane) m = x > m ? x : m;
     return m;
   }
+  GRANRAD_INLINE V largest_component(const V f[3]) {
+    return S::max(S::max(S::abs(f[0]), S::abs(f[1])), S::abs(f[2]));
+  }
   template <class P, bool periodic>
   GRANRAD_INLINE void nearest_image(const StepConstants& k, typename P::V d[3]) {
     if constexpr (periodic)
       for (int a = 0; a < 3; ++a) d[a] -= P::set(k.period[a]) * P::round(d[a] * P::set(k.inverse_period[a]));
   }
-  GRANRAD_INLINE void to_fixed3(const V v[3], double scale, typename D::I out[H][3]) {
+  /// scale(h): fixed-point units of the contacts of half h.
+  template <class Scale>
+  GRANRAD_INLINE void to_fixed3(const V v[3], Scale scale, typename D::I out[H][3]) {
     typename D::V wide[H];
     for (int a = 0; a < 3; ++a) {
       S::widen(v[a], wide);
-      for (int h = 0; h < H; ++h) out[h][a] = S::to_fixed(wide[h] * D::set(scale));
+      for (int h = 0; h < H; ++h) out[h][a] = S::to_fixed(wide[h] * scale(h));
     }
   }
 
@@ -69,7 +77,8 @@ struct PairBodies {
       D::pair_positions(rows.position, c.first + from, c.second + from, d);
       nearest_image<D, periodic>(k, d);
       if constexpr (varied)
-        sum = D::load(column(c, BodyColumn::first_radius, from)) + D::load(column(c, BodyColumn::second_radius, from));
+        sum = D::load(column(c, BodyColumn::first_radius, from)) +
+              D::load(column(c, BodyColumn::second_radius, from));
       for (int a = 0; a < 3; ++a) away[a][h] = d[a];
       square[h] = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
       excess[h] = sum * sum - square[h];
@@ -78,10 +87,9 @@ struct PairBodies {
     in.square = S::narrow(square), in.excess = S::narrow(excess);
   }
 
-  template <bool varied>
-  GRANRAD_INLINE void contact(const ContactView& c, const StepConstants& constants,
-                              const Law& uniform, std::int64_t k, const Gathered& in,
-                              Scattered& out, V& deepest) {
+  template <bool varied, bool first_only>
+  GRANRAD_INLINE void contact(const ContactView& c, const StepConstants& constants, const Law& uniform,
+                              std::int64_t k, const Gathered& in, Scattered& out, Worst& worst) {
     const V half = S::set(0.5);
     const auto* springs = S::springs(c);
     if (!out.live) {
@@ -90,7 +98,8 @@ struct PairBodies {
     }
     V ri, rj;
     if constexpr (varied)
-      ri = S::load(column(c, BodyColumn::first_radius, k)), rj = S::load(column(c, BodyColumn::second_radius, k));
+      ri = S::load(column(c, BodyColumn::first_radius, k)),
+      rj = S::load(column(c, BodyColumn::second_radius, k));
     else
       ri = rj = S::set(constants.radius);
     const V distance = S::sqrt(in.square), inverse = S::set(1.0) / distance;
@@ -106,19 +115,35 @@ struct PairBodies {
     const Law law = varied ? varied_law(c, k) : uniform;
     const auto result = ContactLaw::force<S>(law, S::set(constants.step_s), state);
     const V smaller = varied ? S::select(S::less(ri, rj), ri, rj) : ri;
-    deepest = S::max(deepest, state.overlap - S::set(deepest_overlap) * smaller);
+    worst.beyond = S::max(worst.beyond, state.overlap - S::set(deepest_overlap) * smaller);
     for (int a = 0; a < 3; ++a) S::store(springs[a] + k, state.displacement[a]);
-    to_fixed3(result.force, constants.force_scale, out.force);
     V ti[3], tj[3];
     for (int a = 0; a < 3; ++a) ti[a] = -arm_i * result.moment[a];
-    if constexpr (varied) {
+    if constexpr (!varied) {
+      worst.force = S::max(worst.force, largest_component(result.force));
+      to_fixed3(
+          result.force, [&](int) { return D::set(constants.scales.force); }, out.force);
+      to_fixed3(
+          ti, [&](int) { return D::set(constants.scales.torque); }, out.torque);
+    } else {
+      const auto scale = [&](BodyColumn n) {
+        return [&c, k, n](int h) { return D::load(column(c, n, k + h * D::width)); };
+      };
+      const V finer = S::max(S::load(column(c, BodyColumn::first_force_scale, k)),
+                             S::load(column(c, BodyColumn::second_force_scale, k)));
+      worst.force = S::max(worst.force, finer * largest_component(result.force));
       V w[3], roll[3];
       for (int a = 0; a < 3; ++a) w[a] = in.spin[a] - in.other_spin[a];
       ContactLaw::rolling_torque<S>(law, result.elastic, state.normal, w, roll);
       for (int a = 0; a < 3; ++a) tj[a] = -arm_j * result.moment[a] - roll[a], ti[a] += roll[a];
-      to_fixed3(tj, constants.torque_scale, out.other_torque);
+      to_fixed3(result.force, scale(BodyColumn::first_force_scale), out.force);
+      to_fixed3(ti, scale(BodyColumn::first_torque_scale), out.torque);
+      if constexpr (!first_only) {
+        const V back[3] = {-result.force[0], -result.force[1], -result.force[2]};
+        to_fixed3(back, scale(BodyColumn::second_force_scale), out.other_force);
+        to_fixed3(tj, scale(BodyColumn::second_torque_scale), out.other_torque);
+      }
     }
-    to_fixed3(ti, constants.torque_scale, out.torque);
   }
 
   template <bool varied, bool first_only>
@@ -128,10 +153,7 @@ struct PairBodies {
       const std::int32_t *i = c.first + at + h * D::width, *j = c.second + at + h * D::width;
       const auto* f = out.force[h];
       if constexpr (first_only || varied) D::add_one(rows.force, i, f, out.torque[h]);
-      if constexpr (!first_only && varied) {
-        const typename D::I opposite[3] = {-f[0], -f[1], -f[2]};
-        D::add_one(rows.force, j, opposite, out.other_torque[h]);
-      }
+      if constexpr (!first_only && varied) D::add_one(rows.force, j, out.other_force[h], out.other_torque[h]);
       if constexpr (!first_only && !varied) D::add_pair(rows.force, i, j, f, out.torque[h]);
     }
   }
@@ -139,12 +161,12 @@ struct PairBodies {
   /// In chunks of 32 contacts: gather the rows, work the law, scatter the forces. Three short loops keep the
   /// loads, the arithmetic and the read-modify-writes of different packs from waiting for each other.
   template <bool periodic, bool varied, bool first_only>
-  static double loop(const RowView& rows, const ContactView& c, const StepConstants& constants) {
+  static WorstContact loop(const RowView& rows, const ContactView& c, const StepConstants& constants) {
     Gathered in[packs];
     Scattered out[packs];
     const Law uniform = broadcast(constants.pair);
     const auto* motion = S::motion(rows);
-    V deepest = S::set(-1.0);
+    Worst worst;
     for (std::int64_t begin = 0; begin < c.count; begin += chunk) {
       const std::int64_t left = (c.count - begin) / W, n = left < packs ? left : packs;
       for (std::int64_t q = 0; q < n; ++q) {
@@ -165,15 +187,16 @@ struct PairBodies {
           S::pair_velocities(motion, i, j, in[q].velocity, in[q].spin);
       }
       for (std::int64_t q = 0; q < n; ++q)
-        contact<varied>(c, constants, uniform, begin + q * W, in[q], out[q], deepest);
+        contact<varied, first_only>(c, constants, uniform, begin + q * W, in[q], out[q], worst);
       for (std::int64_t q = 0; q < n; ++q)
         if (out[q].live) scatter<varied, first_only>(rows, c, begin + q * W, out[q]);
     }
-    return largest(deepest);
+    const double units = varied ? 1 : constants.scales.force;
+    return {largest(worst.beyond), units * largest(worst.force)};
   }
 
   template <bool first_only>
-  static double contacts(const RowView& r, const ContactView& c, const StepConstants& k) {
+  static WorstContact contacts(const RowView& r, const ContactView& c, const StepConstants& k) {
     if (c.varied.columns)
       return k.periodic ? loop<true, true, first_only>(r, c, k) : loop<false, true, first_only>(r, c, k);
     return k.periodic ? loop<true, false, first_only>(r, c, k) : loop<false, false, first_only>(r, c, k);

@@ -131,7 +131,9 @@ void PairList::fill_coefficients(const Rows& rows, const std::vector<Material>& 
   };
   for (std::int64_t k = 0; k < tight_count_; ++k) {
     const auto a = body(first_[k]), b = body(second_[k]);
-    varied_.put(k, a, b, ContactLaw::coefficients(BodiesInContact::particles(a, b)));
+    const auto i = first_[k], j = second_[k];
+    varied_.put(k, {a.radius_m, rows.scales[i]}, {b.radius_m, rows.scales[j]},
+                ContactLaw::coefficients(BodiesInContact::particles(a, b)));
   }
 }
 

@@ -19,6 +19,7 @@ struct Rows {
   std::vector<std::int32_t> bed_index;  ///< row -> index in the Bed
   std::vector<std::int32_t> row_of;     ///< index in the Bed -> row
   std::vector<double> radius, mass;     ///< by row
+  std::vector<FixedScales> scales;      ///< by row, see make_model
   std::vector<std::int32_t> material;   ///< by row
   bool uniform = true;                  ///< one radius, one material, no rolling friction
 

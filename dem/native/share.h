@@ -16,7 +16,7 @@ struct Share {
   PairList own, cross;
   WallContacts walls;
   std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> outbox;  ///< [owner] twins of cross pairs
-  double deepest = -1;
+  WorstContact worst;
   bool too_fast[2] = {false, false};  ///< in the last even and the last odd step
 
   /// Calls visit(a, b, displacement) for every spring kept here: Bed index a with Bed index b > a, or with

@@ -17,7 +17,8 @@ constexpr double smooth_bend = 0.99985;
 /// Of two touches that report the same wall, the face stays before the edge before the vertex, then the deeper.
 bool repeats(const WallSurface& surface, const Touch& t, const Touch& kept, double tolerance) {
   if (t.feature == kept.feature || norm(t.point - kept.point) < tolerance) return true;
-  if (kept.kind == Kind::face && t.kind != Kind::face) return std::abs(dot(t.point - kept.point, kept.normal)) < tolerance;
+  if (kept.kind == Kind::face && t.kind != Kind::face)
+    return std::abs(dot(t.point - kept.point, kept.normal)) < tolerance;
   return kept.kind == Kind::face && t.kind == Kind::face && dot(t.normal, kept.normal) > smooth_bend &&
          surface.adjacent(t.feature, kept.feature);
 }
@@ -127,7 +128,8 @@ void WallContacts::finish_planes(const Rows& rows, const std::vector<Material>& 
   for (std::int64_t k = 0; k < plane_count_; ++k) {
     const auto i = rows_[k];
     const ContactBody body{&materials[rows.material[i]], rows.radius[i], rows.mass[i]};
-    varied_.put(k, body, body, ContactLaw::coefficients(BodiesInContact::with_wall(body)));
+    const ContactColumns::Side side{body.radius_m, rows.scales[i]};
+    varied_.put(k, side, side, ContactLaw::coefficients(BodiesInContact::with_wall(body)));
   }
 }
 
@@ -177,20 +179,20 @@ void WallContacts::refresh(const WallSurface& surface, const Rows& rows, const P
   finish_planes(rows, materials, idle_row, surface.facet_count());
 }
 
-double WallContacts::add_forces(const Kernels& kernels, const WallSurface& surface, Rows& rows,
-                                const Periods& periods, const StepConstants& constants,
-                                const std::vector<Material>& materials) {
-  double deepest = -1;
+WorstContact WallContacts::add_forces(const Kernels& kernels, const WallSurface& surface, Rows& rows,
+                                      const Periods& periods, const StepConstants& constants,
+                                      const std::vector<Material>& materials) {
+  WorstContact worst;
   if (plane_count_ > 0) {
     const auto padded = static_cast<std::int64_t>(rows_.size());
     ContactView view{rows_.data(), facets_.data(), padded, {}, {}, varied_.view(0)};
     for (int a = 0; a < 3; ++a) view.displacement[a] = displacement_[a].data();
-    deepest =
+    worst =
         kernels.plane_contacts(rows.view(), view, {surface.plane_rows(), surface.velocity_rows()}, constants);
   }
   for (auto& border : borders_)
-    deepest = std::max(deepest, border_forces(surface, rows, periods, constants, materials, border));
-  return deepest;
+    worst.include(border_forces(surface, rows, periods, constants, materials, border));
+  return worst;
 }
 
 /// A spring stays with its feature; what rolled from one feature to the next takes its spring along.
@@ -219,10 +221,10 @@ std::vector<WallContacts::Spring> WallContacts::carry_springs(const WallSurface&
   return springs;
 }
 
-/// Adds the force of one touch, with its spring; returns overlap - deepest_overlap x radius.
-double WallContacts::add_touch(const WallSurface& surface, Rows& rows, std::int32_t i,
-                               const LawCoefficients& law, const StepConstants& constants, const Touch& t,
-                               Vec3& spring) {
+/// Adds the force of one touch, with its spring.
+WorstContact WallContacts::add_touch(const WallSurface& surface, Rows& rows, std::int32_t i,
+                                     const LawCoefficients& law, const StepConstants& constants,
+                                     const Touch& t, Vec3& spring) {
   const double radius = rows.radius[i];
   const Vec3 u = rows.velocity_of(i) - surface.velocity(t.facet), w = rows.spin_of(i);
   ContactState<ScalarPack> c;
@@ -240,37 +242,39 @@ double WallContacts::add_touch(const WallSurface& surface, Rows& rows, std::int3
     ContactLaw::rolling_torque<ScalarPack>(law, result.elastic, c.normal, spin, roll);
     for (int a = 0; a < 3; ++a) torque[a] += roll[a];
   }
+  const FixedScales scales = rows.scales[i];
+  WorstContact worst{c.overlap - deepest_overlap * radius, 0};
   for (int a = 0; a < 3; ++a) {
-    rows.force[8 * i + a] += ScalarPack::to_fixed(result.force[a] * constants.force_scale);
-    rows.force[8 * i + 4 + a] += ScalarPack::to_fixed(torque[a] * constants.torque_scale);
+    worst.include({-1, std::abs(result.force[a]) * scales.force});
+    rows.force[8 * i + a] += ScalarPack::to_fixed(result.force[a] * scales.force);
+    rows.force[8 * i + 4 + a] += ScalarPack::to_fixed(torque[a] * scales.torque);
     spring[a] = c.displacement[a];
   }
-  return c.overlap - deepest_overlap * radius;
+  return worst;
 }
 
-double WallContacts::border_forces(const WallSurface& surface, Rows& rows, const Periods& periods,
-                                   const StepConstants& constants, const std::vector<Material>& materials,
-                                   Border& border) {
+WorstContact WallContacts::border_forces(const WallSurface& surface, Rows& rows, const Periods& periods,
+                                         const StepConstants& constants,
+                                         const std::vector<Material>& materials, Border& border) {
   const auto i = border.row;
   const Vec3 p = periods.wrapped(rows.position_of(i));
   const auto touches = distinct_touches(surface, border_facets_.data() + border.facets_begin,
                                         border_facets_.data() + border.facets_end, p, rows.radius[i]);
   if (touches.empty()) {
     border.springs.clear();
-    return -1;
+    return {};
   }
   const ContactBody body{&materials[rows.material[i]], rows.radius[i], rows.mass[i]};
-  const auto law =
-      rows.uniform ? constants.wall : ContactLaw::coefficients(BodiesInContact::with_wall(body));
+  const auto law = rows.uniform ? constants.wall : ContactLaw::coefficients(BodiesInContact::with_wall(body));
   auto springs = carry_springs(surface, touches, std::move(border.springs));
   border.springs.clear();
-  double deepest = -1;
+  WorstContact worst;
   for (std::size_t k = 0; k < touches.size(); ++k) {
     auto& s = springs[k];
-    deepest = std::max(deepest, add_touch(surface, rows, i, law, constants, touches[k], s.displacement));
+    worst.include(add_touch(surface, rows, i, law, constants, touches[k], s.displacement));
     if (!(s.displacement == Vec3{})) border.springs.push_back(s);
   }
-  return deepest;
+  return worst;
 }
 
 std::vector<WallMemory> WallContacts::collect() const {

@@ -39,9 +39,10 @@ class WallContacts {
   /// Chooses those that can touch before the next refresh; in `life_s`.
   void refresh(const WallSurface& surface, const Rows& rows, const Periods& periods,
                const std::vector<Material>& materials, double life_s, std::int32_t idle_row);
-  /// Adds the forces; returns the largest `overlap - deepest_overlap x radius`.
-  double add_forces(const Kernels& kernels, const WallSurface& surface, Rows& rows, const Periods& periods,
-                    const StepConstants& constants, const std::vector<Material>& materials);
+  /// Adds the forces.
+  WorstContact add_forces(const Kernels& kernels, const WallSurface& surface, Rows& rows,
+                          const Periods& periods, const StepConstants& constants,
+                          const std::vector<Material>& materials);
 
   /// Springs that are not zero, in ascending rows.
   std::vector<WallMemory> collect() const;
@@ -72,12 +73,12 @@ class WallContacts {
   static std::vector<Spring> carry_springs(const WallSurface& surface,
                                            const std::vector<WallSurface::Touch>& touches,
                                            std::vector<Spring> old);
-  static double add_touch(const WallSurface& surface, Rows& rows, std::int32_t row,
-                          const LawCoefficients& law, const StepConstants& constants,
-                          const WallSurface::Touch& touch, Vec3& spring);
-  double border_forces(const WallSurface& surface, Rows& rows, const Periods& periods,
-                       const StepConstants& constants, const std::vector<Material>& materials,
-                       Border& border);
+  static WorstContact add_touch(const WallSurface& surface, Rows& rows, std::int32_t row,
+                                const LawCoefficients& law, const StepConstants& constants,
+                                const WallSurface::Touch& touch, Vec3& spring);
+  WorstContact border_forces(const WallSurface& surface, Rows& rows, const Periods& periods,
+                             const StepConstants& constants, const std::vector<Material>& materials,
+                             Border& border);
 
   std::vector<Near> near_;
   std::vector<Border> borders_;

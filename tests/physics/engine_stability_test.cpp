@@ -69,6 +69,23 @@ TEST(EngineStability, no_particle_one_particle) {
   }
 }
 
+// A period makes cells even where nothing stands in them.
+TEST(EngineStability, an_empty_periodic_box_runs_to_its_end) {
+  Bed bed = empty_bed();
+  bed.box = {{0, 0, 0}, {0.01, 0.01, 0.01}};
+  bed.periodic = {false, true, true};
+  const auto engine = make_native_engine(bed, {0, 0, -g}, 1e-5);
+  engine->advance(bed, 0.01);
+  EXPECT_EQ(bed.step, 1000);
+  EXPECT_TRUE(engine->near_pairs(bed, 1e-3).particles.empty());
+  bed.add({5e-3, 5e-3, 5e-3}, {}, radius, 300);  // a feed may fill it, and it may empty again
+  engine->advance(bed, 0.02);
+  EXPECT_NEAR(bed.velocity_m_s[0].z, -g * 0.01, 1e-14);
+  bed.remove_unless({0});
+  engine->advance(bed, 0.03);
+  EXPECT_EQ(bed.step, 3000);
+}
+
 // Planted: beta = ln e / pi.
 TEST(EngineStability, restitution_is_what_the_scene_says) {
   for (const double e : {0.05, 0.45, 0.9, 1.0}) {

@@ -137,6 +137,21 @@ TEST(EngineWalls, conveyor_carries_at_its_speed) {
   for (int k = 0; k < 2; ++k) EXPECT_NEAR(bed.velocity_m_s[k].x, 0.05 * 2 / 7, 1e-5);
 }
 
+// Planted: a belt's velocity as given. Its rounded part across the belt, a thousandth here, then lifts the sphere.
+TEST(EngineWalls, a_slanted_belt_of_rounded_digits_carries_but_does_not_lift) {
+  const double slope = 30 * pi / 180;
+  Bed bed = empty_bed();
+  bed.walls = {square(0.1, 0)};
+  bed.add({0, 0, 3.999e-4}, {}, radius, 300);
+  Bed rounded = bed;
+  bed.walls[0].velocity_m_s = {0.05, 0, 0};
+  rounded.walls[0].velocity_m_s = {0.05, 0, 5e-5};
+  for (Bed* b : {&bed, &rounded})
+    make_native_engine(*b, Vec3{std::sin(slope), 0, -std::cos(slope)} * g, step)->advance(*b, 0.02);
+  EXPECT_NEAR(rounded.position_m[0].z, bed.position_m[0].z, 1e-15);
+  EXPECT_NEAR(rounded.velocity_m_s[0].x, bed.velocity_m_s[0].x, 1e-14);
+}
+
 TEST(EngineWalls, shutter_opens_on_time) {
   Bed bed = empty_bed();
   bed.walls = {square(0.1, 0)};

@@ -107,6 +107,13 @@ TEST(Scene, WallsTakeWhatTheyAreGiven) {
   EXPECT_EQ(s.walls[0].role, WallRole::excluded);
 }
 
+TEST(Scene, ABeltMayHaveRoundedDigits) {
+  const auto scene = parse(plug_scene +
+                           "[[polygon]]\nname = 'belt'\nvelocity_m_s = [0.866, 0, 0.5]\n"
+                           "vertices_m = [[0,0,0],[0.86602540378,0,0.5],[0.86602540378,1,0.5],[0,1,0]]\n");
+  EXPECT_EQ(scene.walls.back().velocity_m_s.z, 0.5);
+}
+
 TEST(Scene, PeriodicDirectionsHaveNoWalls) {
   const Scene s = parse(replaced(plug_scene, "[box]\n", "[box]\nperiodic = ['x', 'y']\n"));
   EXPECT_EQ(s.walls.size(), 2u);
@@ -260,6 +267,10 @@ TEST(Scene, BadScenesAreRefusedWithTheirPlace) {
       {plug_scene + "[dem]\nprecision = 'single'\n",
        {"dem.precision = \"single\" (must be one of \"double\", \"mixed\")"}},
       {plug_scene + "[dem]\nstep_s = 0\n", {"dem.step_s = 0 (must be > 0 s)"}},
+      {plug_scene + "[walls.y_min]\nvelocity_m_s = [0, 0.1, 0.2]\n",
+       {"walls.y_min.velocity_m_s: 0.1 m/s of it point across the surface of wall y_min"}},
+      {polygon_scene + "vertices_m = [[0,0,0],[1,0,0],[1,0,1]]\nvelocity_m_s = [1, 0.01, 1]\n",
+       {"0.01 m/s of it point across the surface of wall p"}},
       {plug_scene + "[dme]\nstep_s = 1\n", {"f.toml:21:2: unknown table [dme]. Did you mean [dem]?"}},
       {plug_scene + "[[materials]]\nname = 'material'\n" + material.substr(11),
        {"materials[0].name = \"material\" (another material has this name"}},
