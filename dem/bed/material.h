@@ -26,10 +26,12 @@ struct Material {
 /// scene does not say.
 struct MaterialNumber {
   const char* key;
+  const char* meaning;  ///< a phrase for the reference of keys
   double Material::*value;
   NumberRule rule;
   std::optional<double> standard = {};
-  double Material::*standard_like = nullptr;  ///< as that other number
+  double Material::*standard_like = nullptr;  ///< as that other number,
+  const char* standard_as = "";               ///< whose key is this
 };
 
 /// All of them, in the order of reading. Scenes, frames and engines go over this list: a new property is a member

@@ -18,7 +18,8 @@ Material read_material(TomlTable table, const std::string& default_name) {
   m.name = table.string("name", default_name);
   for (const auto& n : material_numbers()) {
     const auto standard = n.standard_like ? std::optional(m.*n.standard_like) : n.standard;
-    m.*n.value = standard ? table.number(n.key, n.rule, *standard) : table.number(n.key, n.rule);
+    const Key key(n.key, n.meaning, n.standard_as);
+    m.*n.value = standard ? table.number(key, n.rule, *standard) : table.number(key, n.rule);
   }
   return m;
 }
