@@ -6,9 +6,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "dem/base/error.h"
+#include "dem/base/hdf5_heap.h"
 
 namespace granrad {
 
@@ -17,7 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr hsize_t chunk_rows = 1 << 16;
-constexpr hsize_t largest_dataset_bytes = hsize_t{1} << 40;  ///< beyond it a size on disk is damage
+/// Deflate packs no better: a dataset that claims more than this many times what the file holds is damaged.
+constexpr hsize_t most_growth = 1040;
 
 /// An HDF5 object closed at the end of its scope.
 class Handle {
@@ -37,7 +40,10 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
+/// The library keeps quiet, and does nothing at the end of the process: after a disk was full it would write again,
+/// into a file whose close has failed, and crash.
 void silence_hdf5() {
+  H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
@@ -49,7 +55,17 @@ hid_t native_type() {
   if constexpr (std::is_same_v<T, std::uint8_t>) return H5T_NATIVE_UINT8;
 }
 
-Handle text_type() {
+/// UTF-8 text of at most `length` bytes.
+Handle text_type(std::size_t length) {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type, std::max<std::size_t>(length, 1));
+  H5Tset_strpad(type, H5T_STR_NULLPAD);
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  return type;
+}
+
+/// Text of variable length, as older files have it.
+Handle variable_text_type() {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type, H5T_VARIABLE);
   H5Tset_cset(type, H5T_CSET_UTF8);
@@ -150,17 +166,22 @@ template void Hdf5Writer::write(const std::string&, const std::int32_t*, std::si
 template void Hdf5Writer::write(const std::string&, const std::uint8_t*, std::size_t, std::size_t);
 
 void Hdf5Writer::write(const std::string& name, const std::vector<std::string>& texts) {
-  const hsize_t rows = texts.size();
-  const Handle space(H5Screate_simple(1, &rows, nullptr), H5Sclose), type = text_type();
+  std::size_t length = 1;
+  for (const auto& text : texts) length = std::max(length, text.size());
+  std::string bytes;
+  for (const auto& text : texts) bytes.append(text).append(length - text.size(), '\0');
+  const hsize_t rows = texts.size(), chunk = std::min<hsize_t>(rows, chunk_rows);
+  const Handle space(H5Screate_simple(1, &rows, nullptr), H5Sclose), type = text_type(length);
   make_parents(impl_->file, name);
   const Handle layout = without_clock(H5P_DATASET_CREATE);
+  if (rows > 0) {
+    H5Pset_chunk(layout, 1, &chunk);
+    H5Pset_fletcher32(layout);
+  }
   const Handle set(H5Dcreate2(impl_->file, name.c_str(), type, space, H5P_DEFAULT, layout, H5P_DEFAULT),
                    H5Dclose);
   impl_->require(set.valid(), name);
-  std::vector<const char*> pointers;
-  for (const auto& text : texts) pointers.push_back(text.c_str());
-  if (rows > 0)
-    impl_->require(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()) >= 0, name);
+  if (rows > 0) impl_->require(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) >= 0, name);
 }
 
 void Hdf5Writer::group(const std::string& name) {
@@ -179,9 +200,8 @@ void Hdf5Writer::link(const std::string& existing, const std::string& name) {
 }
 
 void Hdf5Writer::attribute(const std::string& object, const std::string& name, const std::string& text) {
-  const Handle type = text_type(), space(H5Screate(H5S_SCALAR), H5Sclose);
-  const char* value = text.c_str();
-  impl_->attribute(object, name, type, space, &value);
+  const Handle type = text_type(text.size()), space(H5Screate(H5S_SCALAR), H5Sclose);
+  impl_->attribute(object, name, type, space, text.c_str());
 }
 
 void Hdf5Writer::fixed_text_attribute(const std::string& object, const std::string& name,
@@ -228,9 +248,28 @@ struct Hdf5Reader::Impl {
   [[noreturn]] void unexpected(const std::string& what) const {
     throw InputError(fmt::format("{}: {}", name.string(), what));
   }
+  /// Whether every link of a path is there; IoError where that cannot be told.
+  bool exists(const std::string& path) const {
+    for (std::size_t end = path.find('/', 1);; end = path.find('/', end + 1)) {
+      const htri_t found = path == "/" ? 1 : H5Lexists(file, path.substr(0, end).c_str(), H5P_DEFAULT);
+      if (found < 0) damaged(path);
+      if (found == 0) return false;
+      if (end == path.npos) return true;
+    }
+  }
+  /// Refuses a dataset that claims more than the file can hold, before anything is allocated.
+  void refuse_false_claim(hid_t set, const std::string& path, hsize_t rows, hsize_t row_bytes) const {
+    const hsize_t stored = std::min<hsize_t>(H5Dget_storage_size(set), fs::file_size(name));
+    if (rows > 0 && (stored == 0 || rows / most_growth > stored / row_bytes)) damaged(path);
+    const Handle layout(H5Dget_create_plist(set), H5Pclose);
+    hsize_t chunk[2] = {1, 1};
+    if (H5Pget_layout(layout) != H5D_CHUNKED || H5Pget_chunk(layout, 2, chunk) < 0) return;
+    if (chunk[0] / most_growth > fs::file_size(name) / row_bytes) damaged(path);
+  }
   Handle dataset(const std::string& path) const {
+    if (!exists(path)) unexpected(fmt::format("there is no dataset {}", path));
     Handle set(H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose);
-    if (!set.valid()) unexpected(fmt::format("there is no dataset {}", path));
+    if (!set.valid()) damaged(path);
     return set;
   }
   /// Rows of a dataset that must be [rows] or [rows, columns].
@@ -242,13 +281,22 @@ struct Hdf5Reader::Impl {
         shape[1] != columns)
       unexpected(fmt::format("dataset {} must have the shape [rows{}]", path,
                              columns > 1 ? fmt::format(", {}", columns) : ""));
-    if (shape[0] > largest_dataset_bytes / (8 * columns)) damaged(path);
+    const Handle type(H5Dget_type(set), H5Tclose);
+    refuse_false_claim(set, path, shape[0], columns * std::max<std::size_t>(1, H5Tget_size(type)));
     return shape[0];
   }
+  bool has_attribute(const std::string& object, const std::string& attribute_name) const {
+    if (!exists(object)) return false;
+    const htri_t found = H5Aexists_by_name(file, object.c_str(), attribute_name.c_str(), H5P_DEFAULT);
+    if (found < 0) damaged(attribute_name);
+    return found > 0;
+  }
   Handle attribute(const std::string& object, const std::string& attribute_name) const {
+    if (!has_attribute(object, attribute_name))
+      unexpected(fmt::format("{} has no attribute {}", object, attribute_name));
     Handle found(H5Aopen_by_name(file, object.c_str(), attribute_name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
                  H5Aclose);
-    if (!found.valid()) unexpected(fmt::format("{} has no attribute {}", object, attribute_name));
+    if (!found.valid()) damaged(attribute_name);
     return found;
   }
   void scalar_attribute(const std::string& object, const std::string& attribute_name, hid_t type,
@@ -273,20 +321,18 @@ Hdf5Reader::Hdf5Reader(fs::path name) {
 Hdf5Reader::~Hdf5Reader() = default;
 
 bool Hdf5Reader::has(const std::string& name) const {
-  for (std::size_t end = name.find('/', 1);; end = name.find('/', end + 1)) {
-    if (H5Lexists(impl_->file, name.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
-    if (end == name.npos) return true;
-  }
+  return impl_->exists(name);
 }
 
 bool Hdf5Reader::has_attribute(const std::string& object, const std::string& name) const {
-  return has(object) && H5Aexists_by_name(impl_->file, object.c_str(), name.c_str(), H5P_DEFAULT) > 0;
+  return impl_->has_attribute(object, name);
 }
 
 std::vector<std::string> Hdf5Reader::children(const std::string& group) const {
   std::vector<std::string> names;
+  if (!has(group)) impl_->unexpected(fmt::format("there is no group {}", group));
   const Handle opened(H5Gopen2(impl_->file, group.c_str(), H5P_DEFAULT), H5Gclose);
-  if (!opened.valid()) impl_->unexpected(fmt::format("there is no group {}", group));
+  if (!opened.valid()) impl_->damaged(group);
   const auto remember = [](hid_t, const char* name, const H5L_info_t*, void* all) -> herr_t {
     static_cast<std::vector<std::string>*>(all)->emplace_back(name);
     return 0;
@@ -315,13 +361,28 @@ template std::vector<std::int32_t> Hdf5Reader::read(const std::string&, std::siz
 template std::vector<std::uint8_t> Hdf5Reader::read(const std::string&, std::size_t) const;
 
 std::vector<std::string> Hdf5Reader::read_texts(const std::string& name) const {
-  const Handle set = impl_->dataset(name), type = text_type(), space(H5Dget_space(set), H5Sclose);
-  std::vector<char*> pointers(impl_->rows_of(set, name, 1), nullptr);
-  if (!pointers.empty() && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()) < 0)
-    impl_->damaged(name);
+  const Handle set = impl_->dataset(name), type(H5Dget_type(set), H5Tclose);
+  if (H5Tget_class(type) != H5T_STRING) impl_->unexpected(fmt::format("dataset {} must hold texts", name));
+  const std::size_t rows = impl_->rows_of(set, name, 1);
   std::vector<std::string> texts;
-  for (const char* text : pointers) texts.emplace_back(text ? text : "");
-  if (!pointers.empty()) H5Dvlen_reclaim(type, space, H5P_DEFAULT, pointers.data());
+  if (H5Tis_variable_str(type) > 0) {
+    const Hdf5Heap heap(impl_->name);
+    const haddr_t offset = rows > 0 ? H5Dget_offset(set) : 0;
+    for (std::size_t k = 0; k < rows; ++k) {
+      const auto reference = offset == HADDR_UNDEF ? std::nullopt : heap.reference(offset, k);
+      const auto text = reference ? heap.text(*reference) : std::nullopt;
+      if (!text) impl_->damaged(name);
+      texts.push_back(*text);
+    }
+    return texts;
+  }
+  const std::size_t length = H5Tget_size(type);
+  std::string bytes(rows * length, '\0');
+  if (rows > 0 && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) < 0) impl_->damaged(name);
+  for (std::size_t k = 0; k < rows; ++k) {
+    texts.push_back(bytes.substr(k * length, length));
+    texts.back().resize(std::min(texts.back().find('\0'), length));
+  }
   return texts;
 }
 
@@ -331,11 +392,13 @@ std::string Hdf5Reader::text_attribute(const std::string& object, const std::str
     impl_->unexpected(fmt::format("attribute {} of {} must be a text", name, object));
   if (H5Tis_variable_str(type) > 0) {
     char* value = nullptr;
-    if (H5Aread(found, text_type(), &value) < 0) impl_->damaged(name);
+    if (!Hdf5Heap(impl_->name).is_sound() || H5Aread(found, variable_text_type(), &value) < 0)
+      impl_->damaged(name);
     const std::string copy(value ? value : "");
     H5free_memory(value);
     return copy;
   }
+  if (H5Tget_size(type) > fs::file_size(impl_->name)) impl_->damaged(name);
   std::string text(H5Tget_size(type), '\0');
   if (H5Aread(found, type, text.data()) < 0) impl_->damaged(name);
   text.resize(text.find_last_not_of('\0') + 1);

@@ -8,7 +8,8 @@
 namespace granrad {
 
 /// Writes one HDF5 file: to `FILE.tmp` first, and under its name only by `commit`, after fsync; the file is
-/// whole or not there. Datasets carry checksums (Fletcher32), integers are compressed. Every failure is an
+/// whole or not there. Datasets carry checksums (Fletcher32), integers are compressed, texts have fixed lengths
+/// (those of variable length carry no checksum, and damage to them crashes the library). Every failure is an
 /// IoError. T is double, std::int64_t, std::int32_t or std::uint8_t. The user of the HDF5 library beside its
 /// reader.
 class Hdf5Writer {
@@ -30,7 +31,7 @@ class Hdf5Writer {
   /// A second name for the same data (hard link).
   void link(const std::string& existing, const std::string& name);
 
-  /// Text of variable length in UTF-8: a str in h5py.
+  /// Text of fixed length in UTF-8: bytes in h5py.
   void attribute(const std::string& object, const std::string& name, const std::string& text);
   /// Text of fixed length in ASCII, the only kind VTK reads.
   void fixed_text_attribute(const std::string& object, const std::string& name, const std::string& text);
@@ -44,8 +45,8 @@ class Hdf5Writer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Reads an HDF5 file. IoError when it cannot be opened or read (truncated, checksum), InputError when
-/// something asked for is not there or has another shape.
+/// Reads an HDF5 file, whatever it holds. IoError when it cannot be opened or read (truncated, checksum, sizes
+/// beyond what the file can hold), InputError when something asked for is not there or has another shape.
 class Hdf5Reader {
  public:
   explicit Hdf5Reader(std::filesystem::path file);
@@ -55,7 +56,7 @@ class Hdf5Reader {
 
   bool has(const std::string& name) const;
   bool has_attribute(const std::string& object, const std::string& name) const;
-  std::vector<std::string> children(const std::string& group) const;  ///< in alphabetical order
+  std::vector<std::string> children(const std::string& group) const;          ///< in alphabetical order
   bool is_integer(const std::string& dataset) const;
 
   /// Values of a dataset [rows] or [rows, columns], row by row.

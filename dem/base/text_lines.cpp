@@ -1,11 +1,9 @@
 #include "dem/base/text_lines.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
-#include <fstream>
+#include <utility>
 
-#include "dem/base/error.h"
+#include "dem/base/file_bytes.h"
 
 namespace granrad {
 
@@ -21,25 +19,33 @@ std::string_view trimmed(std::string_view text) {
 
 }  // namespace
 
-TextLines::TextLines(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file))
-    throw IoError(fmt::format("{}: cannot be read", file.string()));
-  in.seekg(0, std::ios::end);
-  text_.resize(static_cast<std::size_t>(std::max<std::streamoff>(in.tellg(), 0)));
-  in.seekg(0);
-  if (!in.read(text_.data(), static_cast<std::streamsize>(text_.size())))
-    throw IoError(fmt::format("{}: cannot be read", file.string()));
-  if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
+TextLines::TextLines(const std::filesystem::path& file) : TextLines(file_bytes(file)) {}
+
+TextLines::TextLines(std::string text) : text_(std::make_shared<const std::string>(std::move(text))) {
+  if (text_->starts_with("\xEF\xBB\xBF")) place_.at = 3;
 }
 
 bool TextLines::next(std::string_view& line) {
-  if (at_ >= text_.size()) return false;
-  const auto end = std::min(text_.find('\n', at_), text_.size());
-  line = trimmed(std::string_view(text_).substr(at_, end - at_));
-  at_ = end + 1;
-  ++number_;
+  if (at_end()) return false;
+  const auto end = std::min(text_->find('\n', place_.at), text_->size());
+  line = trimmed(std::string_view(*text_).substr(place_.at, end - place_.at));
+  place_.at = end + 1;
+  ++place_.number;
   return true;
+}
+
+TextLines TextLines::from(Place place) const {
+  TextLines lines = *this;
+  lines.place_ = place;
+  return lines;
+}
+
+std::string_view TextLines::rest() const {
+  return at_end() ? std::string_view() : std::string_view(*text_).substr(place_.at);
+}
+
+void TextLines::skip_bytes(std::size_t count) {
+  place_.at += std::min(count, rest().size());
 }
 
 void split_at(char separator, std::string_view line, std::vector<std::string_view>& out) {

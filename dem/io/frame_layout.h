@@ -10,7 +10,8 @@ namespace granrad {
 
 /// What frame_writer and frame_reader agree on.
 inline constexpr const char* frame_format = "granrad.frame";
-inline constexpr std::int64_t frame_version = 1;
+/// 2: texts of fixed length. 1 is read, too.
+inline constexpr std::int64_t frame_version = 2;
 
 /// Where viewers look for a column of the Bed; /granrad/particles/NAME is a second name of it.
 template <class T>

@@ -56,7 +56,9 @@ class FrameReader {
     read_walls(bed);
     const auto box = read_values<Vec3>(in_, "/granrad/box");
     const auto periodic = in_.read<std::uint8_t>("/granrad/periodic");
-    sound(box.size() == 2 && periodic.size() == 3, "box");
+    sound(box.size() == 2 && periodic.size() == 3 && is_finite(box[0]) && is_finite(box[1]), "box");
+    for (int axis = 0; axis < 3; ++axis)
+      sound(box[0][axis] <= box[1][axis] && (!periodic[axis] || box[0][axis] < box[1][axis]), "box");
     bed.box = {box[0], box[1]};
     std::copy(periodic.begin(), periodic.end(), bed.periodic.begin());
     read_state(snapshot.state);
@@ -65,18 +67,22 @@ class FrameReader {
 
  private:
   void check_format() {
-    if (!in_.has_attribute("/granrad", "format") || in_.text_attribute("/granrad", "format") != frame_format)
+    const auto refuse = [&] {
       throw InputError(
           fmt::format("{}: is not a frame of granrad (no /granrad with format \"{}\")", file_, frame_format));
+    };
+    if (!in_.has_attribute("/granrad", "format") || !in_.has_attribute("/granrad", "version")) refuse();
     version_ = in_.integer_attribute("/granrad", "version");
     if (version_ < 1 || version_ > frame_version)
-      throw InputError(fmt::format(
-          "{}: frame version {} (this program reads versions up to {}) use the program that wrote it", file_,
-          version_, frame_version));
+      throw InputError(advised(fmt::format("{}: frame version {} (this program reads versions up to {})",
+                                           file_, version_, frame_version),
+                               "use the program that wrote it"));
+    // Texts of version 1 have no checksum: none is read that is not needed.
+    if (version_ > 1 && in_.text_attribute("/granrad", "format") != frame_format) refuse();
   }
   void sound(bool holds, const std::string& what) const {
     if (!holds)
-      throw InputError(fmt::format("{}: {} of this frame is inconsistent (damaged file)", file_, what));
+      throw IoError(fmt::format("{}: {} of this frame is inconsistent (damaged file)", file_, what));
   }
 
   void read_particles(Bed& bed) const {
@@ -104,8 +110,12 @@ class FrameReader {
     const auto second = in_.read<std::int64_t>("/granrad/contacts/second");
     const auto displacement = read_values<Vec3>(in_, "/granrad/contacts/displacement_m");
     sound(second.size() == first.size() && displacement.size() == first.size(), "contact memory");
-    for (std::size_t k = 0; k < first.size(); ++k)
+    for (std::size_t k = 0; k < first.size(); ++k) {
+      sound(is_finite(displacement[k]) &&
+                (k == 0 || std::pair(first[k - 1], second[k - 1]) < std::pair(first[k], second[k])),
+            "contact memory");
       bed.contacts.push_back({first[k], second[k], displacement[k]});
+    }
   }
 
   void read_materials(Bed& bed) const {
@@ -114,7 +124,10 @@ class FrameReader {
     for (const auto& number : material_numbers()) {
       const auto column = in_.read<double>(std::string("/granrad/materials/") + number.key);
       sound(column.size() == bed.materials.size(), std::string("material ") + number.key);
-      for (std::size_t m = 0; m < column.size(); ++m) bed.materials[m].*number.value = column[m];
+      for (std::size_t m = 0; m < column.size(); ++m) {
+        sound(std::isfinite(column[m]), std::string("material ") + number.key);
+        bed.materials[m].*number.value = column[m];
+      }
     }
   }
 
@@ -151,6 +164,9 @@ class FrameReader {
       wall.emissivity = emissivity[w];
       wall.opens_at_s = opens_at[w];
       wall.velocity_m_s = velocity[w];
+      sound(std::isfinite(temperature[w]) && std::isfinite(emissivity[w]) && is_finite(velocity[w]) &&
+                !std::isnan(opens_at[w]),
+            "wall " + names[w]);
       wall.vertices.assign(vertices.begin() + vertex_begin[w], vertices.begin() + vertex_begin[w + 1]);
       for (auto t = triangle_begin[w]; t < triangle_begin[w + 1]; ++t) {
         wall.triangles.push_back({corners[3 * t], corners[3 * t + 1], corners[3 * t + 2]});
@@ -158,6 +174,9 @@ class FrameReader {
           sound(corner >= 0 && corner < static_cast<std::int32_t>(wall.vertices.size()),
                 "a triangle of " + names[w]);
       }
+      sound(wall.vertices.size() >= 3 && std::all_of(wall.vertices.begin(), wall.vertices.end(),
+                                                     [](const Vec3& v) { return is_finite(v); }),
+            "the vertices of wall " + names[w]);
       bed.walls.push_back(std::move(wall));
     }
   }

@@ -6,33 +6,18 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <map>
-#include <tuple>
+#include <set>
 
 #include "dem/base/error.h"
+#include "dem/base/file_bytes.h"
 #include "dem/base/text_lines.h"
+#include "dem/io/mesh_mend.h"
 
 namespace granrad {
 
 namespace {
 
-/// A triangle whose area is below this part of the squared size of its solid has no usable normal.
-constexpr double no_area = 1e-12;
 constexpr std::size_t binary_head = 84, binary_facet = 50;  // bytes; the head ends with the number of facets
-
-/// As it stands in the file: three corners a triangle.
-struct Solid {
-  std::string name;
-  std::vector<Vec3> corners;
-};
-
-std::string bytes_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in || !std::filesystem::is_regular_file(file))
-    throw IoError(fmt::format("{}: cannot be read", file.string()));
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 bool is_binary(const std::string& bytes) {
   if (bytes.size() < binary_head) return false;
@@ -41,8 +26,8 @@ bool is_binary(const std::string& bytes) {
   return bytes.size() == binary_head + binary_facet * count;
 }
 
-Solid read_binary(const std::string& bytes) {
-  Solid solid;
+Facets read_binary(const std::string& bytes) {
+  Facets solid;
   for (std::size_t at = binary_head; at < bytes.size(); at += binary_facet) {
     float facet[12];  // normal, then corners
     std::memcpy(facet, bytes.data() + at, sizeof facet);
@@ -54,12 +39,13 @@ Solid read_binary(const std::string& bytes) {
 
 class TextReader {
  public:
-  explicit TextReader(const std::filesystem::path& file) : file_(file.string()), lines_(file) {}
+  TextReader(std::string file, std::string text) : file_(std::move(file)), lines_(std::move(text)) {}
 
-  std::vector<Solid> read() {
+  std::vector<Facets> read() {
     std::string_view line;
     while (lines_.next(line)) {
       split_words(line, words_);
+      line_ = line;
       if (!words_.empty()) take(lower(words_[0]));
     }
     if (open_) fail("the file ends inside a solid (it is cut short)");
@@ -78,7 +64,8 @@ class TextReader {
 
   void take(const std::string& keyword) {
     if (keyword == "solid") {
-      solids_.push_back({words_.size() > 1 ? std::string(words_[1]) : "", {}});
+      solids_.push_back(
+          {words_.size() > 1 ? std::string(line_.substr(words_[1].data() - line_.data())) : "", {}});
       open_ = true;
     } else if (!open_) {
       fail("is not an STL file (a text file starts with \"solid\"; a binary one must be whole)");
@@ -108,68 +95,39 @@ class TextReader {
 
   std::string file_;
   TextLines lines_;
+  std::string_view line_;
   std::vector<std::string_view> words_;
-  std::vector<Solid> solids_;
+  std::vector<Facets> solids_;
   bool open_ = false;
 };
 
-/// Corners that agree in single precision, measured from the first, are one vertex: programs write the same
-/// corner with different last digits.
-Wall merged(const Solid& solid, double scale) {
-  Wall wall;
-  std::map<std::tuple<float, float, float>, std::int32_t> known;
-  const auto index_of = [&](const Vec3& corner) {
-    const Vec3 from_first = corner - solid.corners[0];
-    const std::tuple key(static_cast<float>(from_first.x), static_cast<float>(from_first.y),
-                         static_cast<float>(from_first.z));
-    const auto [at, is_new] = known.emplace(key, static_cast<std::int32_t>(known.size()));
-    if (is_new) wall.vertices.push_back(scale * corner);
-    return at->second;
-  };
-  for (std::size_t k = 0; k + 2 < solid.corners.size(); k += 3) {
-    const auto a = index_of(solid.corners[k]), b = index_of(solid.corners[k + 1]);
-    wall.triangles.push_back({a, b, index_of(solid.corners[k + 2])});
+/// Names differ: a solid without one is called by its number, one called as another gets a number behind.
+void name_apart(std::vector<Facets>& solids) {
+  std::set<std::string> known;
+  for (std::size_t k = 0; k < solids.size(); ++k) {
+    const std::string name = solids[k].name.empty() ? fmt::format("{}", k + 1) : solids[k].name;
+    solids[k].name = name;
+    for (int copy = 2; !known.insert(solids[k].name).second; ++copy)
+      solids[k].name = fmt::format("{}_{}", name, copy);
   }
-  return wall;
-}
-
-void check(const Wall& wall, const std::string& file) {
-  double size_squared = 0;
-  for (const auto& v : wall.vertices) {
-    if (!is_finite(v)) throw InputError(fmt::format("{}: a vertex is not finite", file));
-    const Vec3 diagonal = v - wall.vertices[0];
-    size_squared = std::max(size_squared, dot(diagonal, diagonal));
-  }
-  std::size_t bad = 0, first = 0;
-  for (std::size_t t = 0; t < wall.triangles.size(); ++t) {
-    const auto& [a, b, c] = wall.triangles[t];
-    const Vec3 twice_area = cross(wall.vertices[b] - wall.vertices[a], wall.vertices[c] - wall.vertices[a]);
-    if (norm(twice_area) <= no_area * size_squared && bad++ == 0) first = t + 1;
-  }
-  if (bad > 0)
-    throw InputError(
-        fmt::format("{}: {} of {} triangles have no area, first number {} (their normal is undefined); "
-                    "remove them in the program that wrote the file",
-                    file, bad, wall.triangles.size(), first));
 }
 
 }  // namespace
 
-std::vector<Wall> import_stl(const std::filesystem::path& file, double scale, const std::string& name) {
-  const std::string bytes = bytes_of(file);
-  std::vector<Solid> solids = is_binary(bytes) ? std::vector{read_binary(bytes)} : TextReader(file).read();
-  std::erase_if(solids, [](const Solid& solid) { return solid.corners.empty(); });
-  if (solids.empty()) throw InputError(fmt::format("{}: has no triangles", file.string()));
-  std::vector<Wall> walls;
-  for (const Solid& solid : solids) {
-    Wall wall = merged(solid, scale);
-    check(wall, file.string());
-    wall.name = solids.size() == 1
-                    ? name
-                    : fmt::format("{}.{}", name,
-                                  solid.name.empty() ? fmt::format("{}", walls.size() + 1) : solid.name);
-    walls.push_back(std::move(wall));
-  }
+std::vector<Wall> import_stl(const std::filesystem::path& file, double scale, const std::string& name,
+                             std::string* note) {
+  const std::string bytes = file_bytes(file);
+  std::vector<Facets> solids =
+      is_binary(bytes) ? std::vector{read_binary(bytes)} : TextReader(file.string(), bytes).read();
+  std::erase_if(solids, [](const Facets& solid) { return solid.corners.empty(); });
+  name_apart(solids);
+  MeshMending mending;
+  std::vector<Wall> walls = mended(solids, scale, file.string(), mending);
+  if (walls.empty())
+    throw InputError(solids.empty() ? fmt::format("{}: has no triangles", file.string())
+                                    : fmt::format("{}: no triangle has an area", file.string()));
+  for (Wall& wall : walls) wall.name = solids.size() == 1 ? name : fmt::format("{}.{}", name, wall.name);
+  if (note) *note = mending.note().empty() ? "" : fmt::format("{}: {}", file.string(), mending.note());
   return walls;
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "dem/base/error.h"
 #include "dem/bed/cell_grid.h"
@@ -31,17 +32,62 @@ void translate_materials(Bed& particles, const std::vector<Material>& scene_mate
     const auto same = [&](const Material& s) { return s.name == particles.materials[m].name; };
     const auto at = std::find_if(scene_materials.begin(), scene_materials.end(), same);
     if (at == scene_materials.end() && scene_materials.size() > 1)
-      throw InputError(fmt::format("{}: material \"{}\" (not in the scene) add [[materials]] with this name",
-                                   file, particles.materials[m].name));
+      throw InputError(
+          advised(fmt::format("{}: material \"{}\" (not in the scene)", file, particles.materials[m].name),
+                  "add [[materials]] with this name"));
     number[m] = at == scene_materials.end() ? 0 : static_cast<std::int32_t>(at - scene_materials.begin());
   }
   for (auto& material : particles.material) {
-    if (!number.empty()) material = number.at(material);
+    if (!number.empty()) material = number.at(static_cast<std::size_t>(material));
     if (material < 0 || material >= static_cast<std::int32_t>(scene_materials.size()))
       throw InputError(
-          fmt::format("{}: a particle is of material number {} (the scene has {}) add [[materials]]", file,
-                      material, scene_materials.size()));
+          advised(fmt::format("{}: a particle is of material number {}, counted from 0 (the scene has "
+                              "{})",
+                              file, material, scene_materials.size()),
+                  "add [[materials]]"));
   }
+}
+
+/// Types of a dump, less one, become materials of the scene: by the names of particles.types, else in the order of
+/// the materials; a scene of one material takes every type for it.
+void translate_types(Bed& particles, const Scene& scene) {
+  if (scene.materials.size() == 1) {
+    std::fill(particles.material.begin(), particles.material.end(), 0);
+    return;
+  }
+  std::vector<std::string> names = scene.particle_types;
+  if (names.empty())
+    for (const Material& m : scene.materials) names.push_back(m.name);
+  std::vector<std::int32_t> number;
+  for (const std::string& name : names) {
+    const auto at = std::find_if(scene.materials.begin(), scene.materials.end(),
+                                 [&](const Material& m) { return m.name == name; });
+    if (at == scene.materials.end())
+      throw InputError(fmt::format("particles.types: \"{}\" is no material of the scene", name));
+    number.push_back(static_cast<std::int32_t>(at - scene.materials.begin()));
+  }
+  for (auto& material : particles.material) {
+    if (material >= static_cast<std::int32_t>(number.size()))
+      throw InputError(
+          advised(fmt::format("{}: a particle is of type {} (the scene tells the materials of {} types)",
+                              scene.particle_file.string(), material + 1, number.size()),
+                  "name the materials of all types in [particles] types"));
+    material = number[static_cast<std::size_t>(material)];
+  }
+}
+
+/// diameter_m and radii in the file say the same, or serve different particles (those of a feed).
+void refuse_two_sizes(const Scene& scene, const Snapshot& snapshot) {
+  constexpr double same = 1e-3;
+  const double mean = mean_diameter_m(snapshot.bed.radius_m);
+  if (!snapshot.has_radius || snapshot.bed.size() == 0 || scene.feed.kind != FeedSettings::Kind::none ||
+      std::abs(scene.particle_diameter_m - mean) <= same * mean)
+    return;
+  throw InputError(
+      advised(fmt::format("particles.diameter_m = {:g} m ({} has radii of its own, {:g} m across in the "
+                          "mean)",
+                          scene.particle_diameter_m, scene.particle_file.string(), mean),
+              "leave diameter_m out"));
 }
 
 void refuse_particles_behind_walls(const Scene& scene, const Bed& bed) {
@@ -92,7 +138,11 @@ void refuse_deep_overlaps(const Scene& scene, const Bed& bed) {
 void take_particles(const Scene& scene, Bed& bed) {
   Snapshot snapshot = read_snapshot(scene.particle_file, 0.5 * scene.particle_diameter_m);
   Bed& from = snapshot.bed;
-  translate_materials(from, scene.materials, scene.particle_file.string());
+  refuse_two_sizes(scene, snapshot);
+  if (snapshot.has_types)
+    translate_types(from, scene);
+  else
+    translate_materials(from, scene.materials, scene.particle_file.string());
   if (!same_geometry(from.walls, scene.walls))
     std::erase_if(from.contacts, [](const ContactMemory& c) { return c.second < 0; });
   if (!snapshot.has_temperature)

@@ -49,6 +49,9 @@ void read_particles(TomlTable table, Scene& scene) {
   const NumberRule diameter{.unit = "m", .min = 0, .min_exclusive = true};
   const NumberRule temperature{.unit = "K", .min = 0, .min_exclusive = true};
   scene.particle_file = table.file("file", false);
+  scene.particle_types = table.string_list(
+      {"types",
+       "names of the materials of the types 1, 2, ... of a dump; default: [material], then [[materials]] in their order"});
   scene.particle_temperature_K = table.number("temperature_K", temperature, 300);
   const bool from_feed = scene.feed.kind != FeedSettings::Kind::none;
   if (scene.particle_file.empty() && !table.has("file"))

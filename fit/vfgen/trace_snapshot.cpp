@@ -46,6 +46,30 @@ void add_box(Bed& bed, const Box& box) {
   bed.box = box;
 }
 
+/// Adds the walls of the files, called "walls" or, of several files, by the name of each; says how they fit.
+std::string add_meshes(Bed& bed, const std::vector<EnclosureSettings::Stl>& files) {
+  std::string text, names;
+  std::vector<Wall> walls;
+  for (const auto& [file, scale] : files) {
+    std::string note;
+    for (auto& wall : import_stl(file, scale, files.size() == 1 ? "walls" : file.stem().string(), &note)) {
+      wall.contact = false;
+      const bool known =
+          std::any_of(walls.begin(), walls.end(), [&](const Wall& w) { return w.name == wall.name; });
+      if (known)
+        throw InputError(
+            advised(fmt::format("--walls: {} (another wall is called {})", file.string(), wall.name),
+                    "give files of different names"));
+      walls.push_back(std::move(wall));
+    }
+    if (!note.empty()) text += note + "\n";
+    names += (names.empty() ? "" : ", ") + file.string();
+  }
+  text += fmt::format("{}: {}", names, describe(check_meshes(walls)));
+  bed.walls.insert(bed.walls.end(), walls.begin(), walls.end());
+  return text;
+}
+
 /// Everything: no particle is left out.
 Box unbounded() {
   return {{-1e30, -1e30, -1e30}, {1e30, 1e30, 1e30}};
@@ -175,6 +199,29 @@ const char* to_string(TraceMethod method) {
   return method == TraceMethod::lines ? "lines" : "embree";
 }
 
+EnclosureSettings::Stl parse_stl(const std::string& text) {
+  const auto colon = text.rfind(':');
+  if (colon == std::string::npos || std::filesystem::exists(text)) return {text, 1};
+  double scale = 0;
+  const char *first = text.data() + colon + 1, *end = text.data() + text.size();
+  const auto [rest, failure] = std::from_chars(first, end, scale);
+  if (failure != std::errc{} || rest != end || !(scale > 0) || !std::isfinite(scale))
+    throw InputError(advised(fmt::format("--walls: {} (not FILE or FILE:SCALE, scale > 0)", text),
+                             "try hopper.stl:0.001 for a file in millimetres"));
+  return {text.substr(0, colon), scale};
+}
+
+SnapshotChoice parse_step(const std::string& text) {
+  if (text == "first") return {SnapshotChoice::Kind::first};
+  if (text == "last") return {SnapshotChoice::Kind::last};
+  SnapshotChoice choice{SnapshotChoice::Kind::step};
+  const auto [rest, failure] = std::from_chars(text.data(), text.data() + text.size(), choice.step);
+  if (failure != std::errc{} || rest != text.data() + text.size() || choice.step < 0)
+    throw InputError(
+        advised(fmt::format("--step: {} (not the number of a step)", text), "try first, last or all"));
+  return choice;
+}
+
 Box parse_box(const std::string& text) {
   const auto colon = text.find(':');
   const auto size = parse_vec3(text.substr(0, colon));
@@ -188,7 +235,10 @@ Box parse_box(const std::string& text) {
 }
 
 SnapshotEnclosure read_enclosure(const std::filesystem::path& snapshot, const EnclosureSettings& settings) {
-  const Snapshot read = read_snapshot(snapshot, settings.radius_m);
+  const Snapshot read = read_snapshot(snapshot, settings.radius_m, settings.which);
+  if (settings.radius_m > 0 && read.has_radius)
+    throw InputError(
+        advised(fmt::format("--radius: {} has radii of its own", snapshot.string()), "drop --radius"));
   Bed bed = read.bed;
   const bool own_walls = !bed.walls.empty();
   if (own_walls && settings.box)
@@ -196,14 +246,8 @@ SnapshotEnclosure read_enclosure(const std::filesystem::path& snapshot, const En
         fmt::format("--box: {} has walls of its own (two sets of walls would hide each other) drop --box",
                     snapshot.string()));
   SnapshotEnclosure result;
-  if (!settings.stl.empty()) {
-    auto walls = import_stl(settings.stl, 1, "walls");
-    result.meshes = fmt::format("{}: {}", settings.stl.string(), describe(check_meshes(walls)));
-    for (auto& wall : walls) {
-      wall.contact = false;
-      bed.walls.push_back(std::move(wall));
-    }
-  }
+  result.note = read.note;
+  if (!settings.stl.empty()) result.meshes = add_meshes(bed, settings.stl);
   if (settings.box) add_box(bed, *settings.box);
   result.enclosure = make_enclosure(bed, settings.box || own_walls ? bed.box : unbounded());
   result.overlaps = check_overlaps(bed, result.enclosure, snapshot.string());

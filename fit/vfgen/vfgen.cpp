@@ -16,7 +16,8 @@ using Body = std::function<int(Verbosity)>;
 
 /// Options as text, until they are checked.
 struct TraceText {
-  std::string method = "embree", sampling = "sobol", box;
+  std::string method = "embree", sampling = "sobol", box, step = "last";
+  std::vector<std::string> stl;
 };
 
 /// A number in [low, high]; unlike CLI::Range it refuses NaN and what follows a number.
@@ -46,7 +47,8 @@ void add_trace(CLI::App& app, Body& body) {
   const auto command = std::make_shared<TraceCommand>();
   const auto text = std::make_shared<TraceText>();
   auto& sub = *app.add_subcommand("trace", "View factors of snapshots by ray tracing");
-  sub.add_option("SNAPSHOT", command->snapshots, "frame (.hdf), CSV or LIGGGHTS/LAMMPS text dump")
+  sub.add_option("SNAPSHOT", command->snapshots,
+                 "frame (.hdf), CSV, LIGGGHTS/LAMMPS text dump, XYZ, VTK (.vtp .vtu .vtk); also .gz")
       ->required();
   sub.add_option("-o,--output", command->output,
                  "HDF5 file; of several snapshots, number k goes to FILE_000k.h5")
@@ -83,7 +85,12 @@ void add_trace(CLI::App& app, Body& body) {
                  "six black walls: X,Y,Z in metres, corner at the origin or at :x0,y0,z0");
   sub.add_option("--radius", command->enclosure.radius_m, "radius in metres, for files without one")
       ->check(number_in(1e-12, 1e6));
-  sub.add_option("--walls", command->enclosure.stl, "STL file of walls, metres");
+  sub.add_option("--step", text->step,
+                 "of files of several snapshots: first, last, all or the number of a step")
+      ->capture_default_str();
+  sub.add_option(
+      "--walls", text->stl,
+      "STL file of walls in metres, or FILE:SCALE (hopper.stl:0.001 for millimetres); may be repeated");
   sub.add_option("--seed", command->trace.seed, "of the random numbers")
       ->check(seed_number())
       ->capture_default_str();
@@ -94,6 +101,9 @@ void add_trace(CLI::App& app, Body& body) {
     command->trace.sampling = text->sampling == "random" ? Sampling::plain : Sampling::sobol;
     body = [command, text](Verbosity verbosity) {
       if (!text->box.empty()) command->enclosure.box = parse_box(text->box);
+      for (const auto& stl : text->stl) command->enclosure.stl.push_back(parse_stl(stl));
+      command->every_step = text->step == "all";
+      if (!command->every_step) command->enclosure.which = parse_step(text->step);
       return run_trace(*command, verbosity);
     };
   });

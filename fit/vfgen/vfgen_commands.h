@@ -15,6 +15,7 @@ struct TraceCommand {
   std::vector<std::filesystem::path> snapshots;
   std::filesystem::path output;
   EnclosureSettings enclosure;
+  bool every_step = false;  ///< every snapshot of each file
   TraceSettings trace;
 };
 int run_trace(const TraceCommand& command, Verbosity verbosity);

@@ -20,6 +20,23 @@ std::filesystem::path numbered(const std::filesystem::path& file, std::size_t nu
   return name;
 }
 
+struct Job {
+  std::filesystem::path file;
+  SnapshotChoice which;
+};
+
+/// One job a file, or one a snapshot of each with --step all.
+std::vector<Job> snapshots_to_trace(const TraceCommand& command) {
+  std::vector<Job> jobs;
+  for (const auto& file : command.snapshots)
+    if (!command.every_step)
+      jobs.push_back({file, command.enclosure.which});
+    else
+      for (const std::int64_t step : SnapshotFile(file, command.enclosure.radius_m).steps())
+        jobs.push_back({file, {SnapshotChoice::Kind::step, step}});
+  return jobs;
+}
+
 void require_surfaces(const Enclosure& enclosure, const std::filesystem::path& snapshot) {
   if (enclosure.sphere_count() == 0 && enclosure.walls.empty())
     throw InputError(fmt::format("{}: no surface to trace (neither particles nor walls) add walls with --box",
@@ -74,10 +91,14 @@ int run_trace(const TraceCommand& command, Verbosity verbosity) {
         fmt::format("--output: {} (view factors are HDF5) name it FILE.h5", command.output.string()));
   require_files(command);
   std::string failures;
-  for (std::size_t k = 0; k < command.snapshots.size() && !interrupt_signal(); ++k) {
-    const auto& snapshot = command.snapshots[k];
-    const auto read = read_enclosure(snapshot, command.enclosure);
+  const auto jobs = snapshots_to_trace(command);
+  for (std::size_t k = 0; k < jobs.size() && !interrupt_signal(); ++k) {
+    const auto& snapshot = jobs[k].file;
+    EnclosureSettings settings = command.enclosure;
+    settings.which = jobs[k].which;
+    const auto read = read_enclosure(snapshot, settings);
     require_surfaces(read.enclosure, snapshot);
+    if (!read.note.empty()) fmt::print(stderr, "note: {}\n", read.note);
     if (read.left_out > 0)
       fmt::print(stderr, "{}: {} particles with their centre outside the box were left out\n",
                  snapshot.string(), read.left_out);
@@ -85,7 +106,7 @@ int run_trace(const TraceCommand& command, Verbosity verbosity) {
     if (!read.meshes.empty() && verbosity != Verbosity::quiet) fmt::print(stderr, "{}\n", read.meshes);
     const auto traced =
         trace_shown(read.enclosure, command.trace, snapshot.string(), verbosity == Verbosity::quiet);
-    const auto file = numbered(command.output, k + 1, command.snapshots.size());
+    const auto file = numbered(command.output, k + 1, jobs.size());
     write_view_factors(file, traced);
     if (verbosity != Verbosity::quiet)
       fmt::print("{}: {} spheres, {} walls; {}\n  {}\n", file.string(), read.enclosure.sphere_count(),

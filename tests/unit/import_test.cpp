@@ -67,12 +67,12 @@ TEST_F(Import, BadCsvIsRefusedLineByLine) {
   const std::string header = "id,x,y,z,radius,temperature\n";
   EXPECT_EQ(problem_of(""), ": is empty; its first line must be x,y,z,radius");
   EXPECT_EQ(problem_of("x;y;z;radius\n"),
-            ":1: \"x;y;z;radius\" (columns are separated by commas: x,y,z,radius) replace ';'");
+            ":1: \"x;y;z;radius\" (columns are separated by commas: x,y,z,radius); replace ';'");
   EXPECT_EQ(problem_of("x\ty\tz\tradius\n"),
-            ":1: \"x\ty\tz\tradius\" (columns are separated by commas: x,y,z,radius) replace '\\t'");
+            ":1: \"x\ty\tz\tradius\" (columns are separated by commas: x,y,z,radius); replace '\\t'");
   EXPECT_EQ(problem_of("x,y,radius\n"), ":1: no column z (columns are x, y, radius)");
   EXPECT_EQ(problem_of("x,y,z\n1,2,3\n"),
-            ":1: no column radius (columns are x, y, z) add it, or give the radius of all particles");
+            ":1: no column radius (columns are x, y, z); add it, or give the radius of all particles");
   EXPECT_EQ(problem_of("x,x,y,z,radius\n"), ":1: column x is given twice");
   EXPECT_EQ(problem_of(header + "1,0,0,0,1,300\n2,0,abc,0,1,300\n"), ":3: y = abc (must be a finite number)");
   EXPECT_EQ(problem_of(header + "1,0,,0,1,300\n"), ":2: y = nothing (must be a finite number)");
@@ -84,8 +84,7 @@ TEST_F(Import, BadCsvIsRefusedLineByLine) {
   EXPECT_EQ(problem_of(header + "1.5,0,0,0,1,300\n"), ":2: id = 1.5 (must be a whole number >= 0)");
   EXPECT_EQ(problem_of(header + "1,0,0,0,1\n"), ":2: 5 values (the header names 6 columns)");
   EXPECT_EQ(problem_of(header + "4,0,0,0,1,300\n4,1,0,0,1,300\n"),
-            ":3: id = 4 (also on line 2) ids must differ");
-  EXPECT_EQ(problem_of("\x1f\x8b garbage"), ": is compressed; unpack it first (gunzip)");
+            ":3: id = 4 (also on line 2); ids must differ");
   std::string many = header;
   for (int k = 0; k < 25; ++k) many += "1,0,0,bad,1,300\n";
   const auto problems = problems_of(many);
@@ -138,7 +137,8 @@ TEST_F(Import, DumpColumnsComeByName) {
 
 TEST_F(Import, BadDumpsAreRefused) {
   const std::string atoms = "ITEM: ATOMS id x y z radius\n";
-  EXPECT_EQ(problem_of("ITEM: TIMESTEP\n1\n"), ": holds no snapshot (no \"ITEM: ATOMS\")");
+  EXPECT_EQ(problem_of("ITEM: TIMESTEP\n1\n"),
+            ":2: the snapshot is cut short: the file ends before ITEM: ATOMS");
   EXPECT_EQ(problem_of(dump_head + atoms + "1 0 0 0 1\n"), ":10: the snapshot is cut short: 1 of 2 atoms");
   EXPECT_EQ(problem_of(dump_head + atoms + "1 0 0 0 1\n2 0 0\n"),
             ":11: 3 values (the header names 5 columns)");
@@ -147,14 +147,14 @@ TEST_F(Import, BadDumpsAreRefused) {
   EXPECT_EQ(problem_of(dump_head + atoms + "1 0 0 0 1\n2 0 0 1 1\n3 0 0 2 1\n"),
             ":12: \"3 0 0 2 1\" (expected a line that starts with \"ITEM: \")");
   EXPECT_EQ(problem_of(dump_head + "ITEM: ATOMS id x y z\n1 0 0 0\n2 0 0 1\n"),
-            ":9: no column radius (columns are id, x, y, z) add it, or give the radius of all particles");
+            ":9: no column radius (columns are id, x, y, z); add it, or give the radius of all particles");
   EXPECT_EQ(problem_of("ITEM: ATOMS id x y z\n"), ":1: ITEM: ATOMS stands before ITEM: NUMBER OF ATOMS");
   EXPECT_EQ(problem_of("ITEM: NUMBER OF ATOMS\nmany\n"),
             ":2: the number of atoms = \"many\" (must be a number >= 0)");
   EXPECT_EQ(problem_of("ITEM: BOX BOUNDS xy xz yz pp pp pp\n0 1 0\n0 1 0.5\n"),
-            ":3: \"0 1 0.5\" (the box is tilted: only upright boxes are read) give x,y,z,radius as CSV");
+            ":3: \"0 1 0.5\" (the box is tilted: only upright boxes are read); give x,y,z,radius as CSV");
   EXPECT_EQ(problem_of("ITEM: UNITS\ncgs\n"),
-            ":2: units = \"cgs\" (lengths must be in metres) convert the dump to SI");
+            ":2: units = \"cgs\" (lengths must be in metres); convert the dump to SI");
   EXPECT_EQ(problem_of("ITEM: BOX BOUNDS pp pp pp\n2 1\n"),
             ":2: \"2 1\" (box bounds must be two rising numbers)");
 }
@@ -237,17 +237,7 @@ TEST_F(Import, BadStlIsRefused) {
   refused("solid a\n" + good + "sphere\n", ":9: is not a line");
   refused("x,y,z,radius\n", "is not an STL file");
   refused("solid a\nendsolid a\n", "has no triangles");
-  try {
-    import_stl(write("solid a\n" + facet("0 0 0", "1 0 0", "0 1 0") + facet("0 0 0", "1 0 0", "2 0 0") +
-                         "endsolid a\n",
-                     "flat.stl"),
-               1, "w");
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("1 of 2 triangles have no area, first number 2"),
-              std::string::npos)
-        << error.what();
-  }
+  refused("solid a\n" + facet("0 0 0", "1 0 0", "2 0 0") + "endsolid a\n", "no triangle has an area");
 }
 
 }  // namespace

@@ -1,0 +1,349 @@
+// Particles come in as other programs write them: names of columns that are nearly ours, several snapshots in a
+// file, files that are being written, XYZ, VTK, gzip; and what our exports wrote comes back as it was.
+// Planted and caught: a component of v taken for another; type taken for material; the cut snapshot read; legacy
+// binary read in the machine's byte order; blocks of a packed array in the wrong order of header.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdlib>
+#include <cstring>
+
+#include "dem/base/error.h"
+#include "dem/base/random.h"
+#include "dem/io/export_text.h"
+#include "dem/io/import_stl.h"
+#include "dem/io/snapshot.h"
+#include "tests/temporary_folder.h"
+
+namespace granrad {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ImportFormats : public testing::Test {
+ protected:
+  Snapshot read(const std::string& text, double radius_m = 0, const std::string& name = "file") const {
+    return read_snapshot(folder_.write(name, text), radius_m);
+  }
+  std::string refusal(const std::string& text, double radius_m = 0) const {
+    try {
+      read(text, radius_m);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "read";
+  }
+  static void expect_says(const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), text.npos) << text;
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(ImportFormats, NamesThatDifferInWritingAreTheSameQuantity) {
+  for (const char* name : {"Temperature", "temp", "TEMP", "T", "t", "f_Temp", "f_Temp[0]", "f_Temp[1]",
+                           "temperature_K", "T_K", "Temp (K)", "c_temp[3]", "v_Temp"}) {
+    const Snapshot one = read(std::string("x,y,z,radius,") + name + "\n0,0,0,1,500\n");
+    EXPECT_TRUE(one.has_temperature) << name;
+    EXPECT_EQ(one.bed.temperature_K[0], 500) << name;
+  }
+  const Bed bed =
+      read("Points:0,Points:1,Points:2,R,v:0,v:1,velocity_z,omega_x,wy,Omega:2\n1,2,3,4,5,6,7,8,9,10\n").bed;
+  EXPECT_EQ(bed.position_m[0], (Vec3{1, 2, 3}));
+  EXPECT_EQ(bed.radius_m[0], 4);
+  EXPECT_EQ(bed.velocity_m_s[0], (Vec3{5, 6, 7}));
+  EXPECT_EQ(bed.angular_velocity_rad_s[0], (Vec3{8, 9, 10}));
+  EXPECT_EQ(read("X,Y,Z,Diameter_m\n0,0,0,8e-4\n").bed.radius_m[0], 4e-4);
+  // a column of its own is not ours, however it begins
+  EXPECT_EQ(read("x,y,z,radius,fx,fy,ix,tqx,mass,density,f_heatFlux,type\n0,0,0,1,9,9,9,9,9,9,9,1\n")
+                .bed.velocity_m_s[0],
+            Vec3{});
+}
+
+TEST_F(ImportFormats, NamesThatAreNearlyOursAreMetWithASuggestion) {
+  expect_says(refusal("x,y,z,radius,temprature\n0,0,0,1,500\n"),
+              ":1: column temprature is not known; did you mean temperature?");
+  expect_says(refusal("x,y,z,radius,temperature_C\n0,0,0,1,25\n"), "did you mean temperature?");
+  expect_says(refusal("x,y,z,radius_mm\n0,0,0,0.4\n", 4e-4), "did you mean radius?");
+  expect_says(refusal("x,y,z,Radus\n0,0,0,0.4\n", 4e-4), "did you mean radius?");
+  expect_says(refusal("x,y,z,radius,f_Temp[1],f_Temp[2]\n0,0,0,1,300,400\n"),
+              "columns f_Temp[1] and f_Temp[2] could both be the temperature");
+  EXPECT_EQ(refusal("x,y,z,radius,temperature,temperature_C\n0,0,0,1,300,27\n"), "read")
+      << "the quantity is there";
+  expect_says(refusal("x,y,z,radius,shapex,shapey,shapez,blockiness1\n0,0,0,1,1,1,2,2\n"),
+              "superquadrics (only spheres");
+  expect_says(refusal("x,y,z,radius,id_multisphere\n0,0,0,1,1\n"), "clumps of spheres");
+}
+
+const std::string head = "ITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS ff ff ff\n0 2\n-1 1\n0 4\n";
+
+TEST_F(ImportFormats, ATypeCountsMaterialsFromOne) {
+  const Snapshot one = read("ITEM: TIMESTEP\n5\n" + head + "ITEM: ATOMS id type x y z radius\n1 2 0 0 0 1\n");
+  EXPECT_TRUE(one.has_types);
+  EXPECT_EQ(one.bed.material[0], 1);
+  expect_says(refusal("ITEM: TIMESTEP\n5\n" + head + "ITEM: ATOMS id type x y z radius\n1 0 0 0 0 1\n"),
+              "type = 0 (must be a type number, from 1)");
+}
+
+std::string snapshot(int step, double x) {
+  return "ITEM: TIMESTEP\n" + std::to_string(step) + "\n" + head + "ITEM: ATOMS id x y z radius\n1 " +
+         std::to_string(x) + " 0 0 1\n";
+}
+
+TEST_F(ImportFormats, OneOfSeveralSnapshotsIsChosen) {
+  const fs::path file = folder_.write("three", snapshot(10, 1) + snapshot(20, 2) + snapshot(30, 3));
+  const SnapshotFile all(file);
+  EXPECT_EQ(all.steps(), (std::vector<std::int64_t>{10, 20, 30}));
+  using Kind = SnapshotChoice::Kind;
+  EXPECT_EQ(read_snapshot(file, 0, {Kind::first}).bed.position_m[0].x, 1);
+  EXPECT_EQ(read_snapshot(file, 0, {Kind::step, 20}).bed.position_m[0].x, 2);
+  EXPECT_EQ(read_snapshot(file).bed.position_m[0].x, 3);
+  EXPECT_THROW(read_snapshot(file, 0, {Kind::step, 25}), InputError);
+}
+
+TEST_F(ImportFormats, ADumpThatIsBeingWrittenGivesItsLastWholeSnapshot) {
+  const std::string whole = snapshot(10, 1) + snapshot(20, 2);
+  EXPECT_TRUE(read(whole).note.empty());
+  const std::string next = snapshot(30, 3);
+  for (std::size_t cut = 1; cut < next.size();
+       ++cut) {  // in the header, between, in the row, before its newline
+    const Snapshot last = read(whole + next.substr(0, cut));
+    EXPECT_EQ(last.bed.step, 20) << cut;
+    if (cut > 1) expect_says(last.note, "the last snapshot is not whole");
+  }
+  expect_says(refusal(snapshot(10, 1).substr(0, 60)), "cut short");
+  expect_says(refusal("ITEM: TIMESTEP\n1\n" + head + "ITEM: ATOMS id x y z radius\nITEM: TIMESTEP\n2\n"),
+              "cut short: 0 of 1");
+}
+
+TEST_F(ImportFormats, BlankAndCommentLinesMayStandFirst) {
+  EXPECT_EQ(read("\n\n" + snapshot(10, 1)).bed.step, 10);
+  EXPECT_EQ(read("\xEF\xBB\xBF# made by us\n \n" + snapshot(10, 1)).bed.step, 10);
+  EXPECT_EQ(read("\n# comment\n\nx,y,z,radius\n\n1,2,3,4\n").bed.radius_m[0], 4);
+}
+
+TEST_F(ImportFormats, GzipIsUnpacked) {
+  const fs::path file = folder_.write("bed.dump", snapshot(10, 1));
+  ASSERT_EQ(std::system(("gzip " + file.string()).c_str()), 0);
+  EXPECT_EQ(read_snapshot(file.string() + ".gz").bed.step, 10);
+  EXPECT_THROW(read("\x1f\x8b garbage"), IoError);
+}
+
+TEST_F(ImportFormats, WhatIsNoneOfTheFormatsIsToldWhichThereAre) {
+  for (const char* text :
+       {"hello world\n", "PK\x03\x04zip", "BZh9", "{\"a\": 1}", "solid a\nendsolid a\n", "ply\nformat"})
+    expect_says(refusal(text), "read are: frames of granrun (.hdf), CSV");
+}
+
+TEST_F(ImportFormats, Xyz) {
+  const Bed plain = read("2\nany comment\nAl 1 2 3\nO 4 5 6\n", 0.5).bed;
+  EXPECT_EQ(plain.position_m[1], (Vec3{4, 5, 6}));
+  const std::string first =
+      "1\nLattice=\"2 0 0 0 3 0 0 0 4\" Origin=\"-1 0 0\" Properties=species:S:1:pos:R:3:radius:R:1:velo:R:3:Temperature:R:1 "
+      "Time=0.25 Timestep=7 pbc=\"T F F\"\nAl 0.5 1 2 0.1 4 5 6 700\n";
+  const Bed bed = read(first).bed;
+  EXPECT_EQ(bed.position_m[0], (Vec3{0.5, 1, 2}));
+  EXPECT_EQ(bed.velocity_m_s[0], (Vec3{4, 5, 6}));
+  EXPECT_EQ(bed.radius_m[0], 0.1);
+  EXPECT_EQ(bed.temperature_K[0], 700);
+  EXPECT_EQ(bed.time_s, 0.25);
+  EXPECT_EQ(bed.step, 7);
+  EXPECT_EQ(bed.box.min, (Vec3{-1, 0, 0}));
+  EXPECT_EQ(bed.box.max, (Vec3{1, 3, 4}));
+  EXPECT_EQ(bed.periodic, (std::array<bool, 3>{true, false, false}));
+  EXPECT_EQ(read(first + "1\nProperties=pos:R:3:radius:R:1 Timestep=8\n1 1").bed.step, 7)
+      << "the second is cut";
+  expect_says(refusal("1\nLattice=\"2 1 0 0 3 0 0 0 4\"\nAl 0 0 0\n", 1), "tilted");
+  expect_says(refusal("1\nProperties=pos:R\nAl 0 0 0\n", 1), "Properties");
+  expect_says(refusal("2\n\nAl 0 0 0\n", 1), "cut short");
+}
+
+template <class T>
+void append_big_endian(std::string& text, T value) {
+  char bytes[sizeof value];
+  std::memcpy(bytes, &value, sizeof value);
+  if (std::endian::native == std::endian::little) std::reverse(bytes, bytes + sizeof value);
+  text.append(bytes, sizeof value);
+}
+
+TEST_F(ImportFormats, LegacyVtk) {
+  const Bed ascii =
+      read(
+          "# vtk DataFile Version 2.0\nGenerated by LIGGGHTS\nASCII\nDATASET POLYDATA\nFIELD FieldData 1\n"
+          "TIME 1 1 double\n0.5\nPOINTS 2 float\n0 1 2 3 4\n5\nVERTICES 2 4\n1 0\n1 1\nPOINT_DATA 2\n"
+          "SCALARS id int 1\nLOOKUP_TABLE default\n9\n4\nVECTORS v float\n1 2 3\n4 5 6\n"
+          "SCALARS radius float\nLOOKUP_TABLE default\n0.5 0.25\nFIELD more 2\nf_Temp 1 2 double\n300 400\n"
+          "type 1 2 int\n1 2\n")
+          .bed;
+  EXPECT_EQ(ascii.id, (std::vector<std::int64_t>{4, 9}));
+  EXPECT_EQ(ascii.position_m[0], (Vec3{3, 4, 5}));
+  EXPECT_EQ(ascii.velocity_m_s[1], (Vec3{1, 2, 3}));
+  EXPECT_EQ(ascii.temperature_K, (std::vector<double>{400, 300}));
+  EXPECT_EQ(ascii.material, (std::vector<std::int32_t>{1, 0}));
+  EXPECT_EQ(ascii.time_s, 0.5);
+
+  std::string binary = "# vtk DataFile Version 3.0\nx\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 2 double\n";
+  for (const double v : {0., 1., 2., 3., 4., 5.}) append_big_endian(binary, v);
+  binary += "\nCELLS 2 4\n";
+  for (const std::int32_t v : {1, 0, 1, 1}) append_big_endian(binary, v);
+  binary += "\nCELL_TYPES 2\n";
+  for (const std::int32_t v : {1, 1}) append_big_endian(binary, v);
+  binary += "\nPOINT_DATA 2\nSCALARS radius float 1\nLOOKUP_TABLE default\n";
+  for (const float v : {0.5f, 0.25f}) append_big_endian(binary, v);
+  binary += "\nVECTORS omega double\n";
+  for (const double v : {1., 2., 3., 4., 5., 6.}) append_big_endian(binary, v);
+  binary += "\n";
+  const Bed bed = read(binary).bed;
+  EXPECT_EQ(bed.position_m[1], (Vec3{3, 4, 5}));
+  EXPECT_EQ(bed.radius_m, (std::vector<double>{0.5, 0.25}));
+  EXPECT_EQ(bed.angular_velocity_rad_s[1], (Vec3{4, 5, 6}));
+  for (std::size_t cut = 60; cut < binary.find("\nVECTORS"); cut += 7)
+    EXPECT_NE(refusal(binary.substr(0, cut)), "read") << cut;
+  expect_says(refusal("# vtk DataFile Version 3.0\nx\nBINARY\nDATASET POLYDATA\nPOINTS 99999999999 double\n"),
+              "room");
+}
+
+TEST_F(ImportFormats, VtkXml) {
+  const auto file = [](const std::string& head_of_file, const std::string& points, const std::string& radius,
+                       const std::string& id, const std::string& tail) {
+    return "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" " + head_of_file +
+           ">\n<PolyData><Piece NumberOfPoints=\"2\">\n<PointData><DataArray type=\"Float64\" Name=\"radius\" " +
+           radius + "</DataArray><DataArray type=\"Int32\" Name=\"id\" " + id +
+           "</DataArray></PointData>\n<Points><DataArray " + "type=\"Float32\" NumberOfComponents=\"3\" " +
+           points + "</DataArray></Points></Piece></PolyData>" + tail + "</VTKFile>\n";
+  };
+  const std::string packed =
+      "compressor=\"vtkZLibDataCompressor\" header_type=\"UInt32\" byte_order=\"LittleEndian\"";
+  // made by zlib: the numbers below, in one block each
+  const std::string points = "AQAAAACAAAAYAAAAGgAAAA==eJxjYAADewaGBiBmOMDA4OAAZNsBABk4Av0=",
+                    radius = "AQAAAACAAAAQAAAAGAAAAA==eJzTdZZ5/cjMyv7Pyo+XfJMc7AE/AQef";
+  const auto check = [&](const Bed& bed) {
+    ASSERT_EQ(bed.size(), 2u);
+    EXPECT_EQ(bed.id, (std::vector<std::int64_t>{3, 7}));
+    EXPECT_EQ(bed.position_m[1], (Vec3{0, 0.5, 1}));
+    EXPECT_EQ(bed.position_m[0], (Vec3{-2, 3, 0.25}));
+    EXPECT_EQ(bed.radius_m, (std::vector<double>{5e-4, 4e-4}));
+  };
+  const std::string ids = "format=\"ascii\">7 3";
+  check(read(file(packed, "format=\"binary\">" + points, "format=\"binary\">" + radius, ids, "")).bed);
+  check(read(file(packed, "format=\"appended\" offset=\"0\">", "format=\"appended\" offset=\"60\">", ids,
+                  "<AppendedData encoding=\"base64\">\n_" + points + radius.substr(0) + "</AppendedData>"))
+            .bed);
+  check(read(file("header_type=\"UInt32\"", "format=\"ascii\">0 0.5 1 -2 3 0.25",
+                  "format=\"ascii\">4e-4 5e-4", "format=\"binary\">CAAAAA==BwAAAAMAAAA=", ""))
+            .bed);
+  std::string raw("\x08\0\0\0\x07\0\0\0\x03\0\0\0", 12);
+  check(read(file("byte_order=\"LittleEndian\"", "format=\"ascii\">0 0.5 1 -2 3 0.25",
+                  "format=\"ascii\">4e-4 5e-4", "format=\"appended\" offset=\"0\">",
+                  "<AppendedData encoding=\"raw\">_" + raw + "</AppendedData>"))
+            .bed);
+  expect_says(refusal(file(packed, "format=\"binary\">" + points.substr(0, 40), "format=\"binary\">" + radius,
+                           ids, "")),
+              "array");
+  expect_says(refusal("<VTKFile type=\"PPolyData\"></VTKFile>"), "PPolyData");
+  expect_says(refusal("<VTKFile type=\"PolyData\"><PolyData>"), "XML");
+}
+
+Bed random_bed(std::size_t n) {
+  Bed bed;
+  bed.box = {{-1, 0, 0.1}, {1, 1 / 3.0, 2}};
+  bed.periodic = {true, false, false};
+  bed.step = 12345;
+  bed.time_s = 0.1 + 0.2;
+  auto uniform = [k = std::uint64_t{0}]() mutable { return random_uniform2(3, 1, k++)[0]; };
+  for (std::size_t i = 0; i < n; ++i) {
+    bed.next_id += i % 2;
+    bed.add({5 * uniform() - 2, -uniform(), uniform() * 1e-300}, {uniform(), -0.0, 1e300}, uniform() + 1e-9,
+            300 + uniform(), static_cast<std::int32_t>(i % 3));
+    bed.angular_velocity_rad_s.back() = {uniform(), uniform(), 1 / 3.0};
+    bed.radiative_heat_W.back() = -uniform();
+  }
+  return bed;
+}
+
+TEST_F(ImportFormats, WhatWasExportedComesBackAsItWas) {
+  const Bed bed = random_bed(50);
+  for (const auto& [text, kind] :
+       {std::pair{dump_text(bed), "dump"}, {vtp_text(bed), "vtp"}, {csv_text(bed), "csv"}}) {
+    const Bed back = read(text).bed;
+    ASSERT_EQ(back.size(), bed.size()) << kind;
+    EXPECT_EQ(back.id, bed.id) << kind;
+    EXPECT_EQ(back.material, bed.material) << kind;
+    EXPECT_EQ(back.radius_m, bed.radius_m) << kind;
+    EXPECT_EQ(back.velocity_m_s, bed.velocity_m_s) << kind;
+    EXPECT_EQ(back.angular_velocity_rad_s, bed.angular_velocity_rad_s) << kind;
+    EXPECT_EQ(back.temperature_K, bed.temperature_K) << kind;
+    EXPECT_EQ(back.radiative_heat_W, bed.radiative_heat_W) << kind;
+    for (std::size_t i = 0; i < bed.size(); ++i)
+      EXPECT_EQ(back.position_m[i], wrapped_into_box(bed, bed.position_m[i])) << kind;
+    if (kind == std::string("csv")) continue;
+    EXPECT_EQ(back.periodic, bed.periodic) << kind;
+    EXPECT_EQ(back.box.min, bed.box.min) << kind;
+    EXPECT_EQ(back.box.max, bed.box.max) << kind;
+    EXPECT_EQ(back.step, bed.step) << kind;
+  }
+  EXPECT_EQ(read(vtp_text(bed)).bed.time_s, bed.time_s);
+}
+
+std::string facet(const Vec3& a, const Vec3& b, const Vec3& c) {
+  std::string text = "facet normal 0 0 0\nouter loop\n";
+  for (const Vec3& v : {a, b, c})
+    text += "vertex " + std::to_string(v.x) + " " + std::to_string(v.y) + " " + std::to_string(v.z) + "\n";
+  return text + "endloop\nendfacet\n";
+}
+
+TEST_F(ImportFormats, MeshesAreMended) {
+  // a unit square of two triangles, their shared corners 3e-6 apart, one triangle twice, one without area
+  const Vec3 a{0, 0, 0}, b{1, 0, 0}, c{1, 1, 0}, d{0, 1, 0}, near_a{3e-6, 0, 0}, near_c{1, 1, -3e-6};
+  std::string note;
+  const auto walls =
+      import_stl(folder_.write("square.stl", "solid square\n" + facet(a, b, c) + facet(near_a, near_c, d) +
+                                                 facet(b, c, a) + facet(a, b, near_a) + "endsolid square\n"),
+                 1, "wall", &note);
+  ASSERT_EQ(walls.size(), 1u);
+  EXPECT_EQ(walls[0].vertices, (std::vector<Vec3>{a, b, c, d}));
+  EXPECT_EQ(walls[0].triangles, (std::vector<std::array<std::int32_t, 3>>{{0, 1, 2}, {0, 2, 3}}));
+  expect_says(note, "3 corners within 1.4e-05 m");
+  expect_says(note, "1 triangles without area left out, 1 triangles given twice left out");
+  const auto both =
+      import_stl(folder_.write("sheet.stl", "solid s\n" + facet(a, b, c) + facet(a, c, b) + "endsolid s\n"),
+                 1, "w", &note);
+  EXPECT_EQ(both[0].triangles.size(), 2u) << "the two sides of a sheet are no double";
+  EXPECT_EQ(note, "");
+}
+
+TEST_F(ImportFormats, ACornerOnAnEdgeCutsTheTriangle) {
+  // one large triangle beside two small ones that share its edge a-b: edges meet edges after it
+  const Vec3 a{0, 0, 0}, b{1, 0, 0}, m{0.4, 0, 0}, up{0.5, 1, 0}, down{0.5, -1, 0};
+  std::string note;
+  const auto walls = import_stl(folder_.write("t.stl", "solid t\n" + facet(a, b, up) + facet(b, m, down) +
+                                                           facet(m, a, down) + "endsolid t\n"),
+                                1, "wall", &note);
+  std::map<std::pair<int, int>, int> uses;
+  double area_m2 = 0;
+  for (const auto& t : walls[0].triangles) {
+    const auto& v = walls[0].vertices;
+    area_m2 += 0.5 * cross(v[t[1]] - v[t[0]], v[t[2]] - v[t[0]]).z;
+    for (int k = 0; k < 3; ++k) ++uses[std::minmax(t[k], t[(k + 1) % 3])];
+  }
+  EXPECT_EQ(walls[0].triangles.size(), 4u);
+  EXPECT_NEAR(area_m2, 1, 1e-15);
+  EXPECT_EQ(std::count_if(uses.begin(), uses.end(), [](const auto& edge) { return edge.second == 1; }), 4)
+      << "the rim alone is open";
+  expect_says(note, "1 triangles cut at corners on their edges");
+}
+
+TEST_F(ImportFormats, SolidsKeepTheirWholeNamesAndDiffer) {
+  const std::string any = facet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}),
+                    other = facet({0, 0, 1}, {1, 0, 1}, {0, 1, 1});
+  const auto walls = import_stl(
+      folder_.write("n.stl", "solid hopper z0\n" + any + "endsolid\nsolid hopper z1\n" + other +
+                                 "endsolid\nsolid hopper z1\n" + facet({0, 0, 2}, {1, 0, 2}, {0, 1, 2}) +
+                                 "endsolid\nsolid\n" + facet({0, 0, 3}, {1, 0, 3}, {0, 1, 3}) + "endsolid\n"),
+      1, "w");
+  std::vector<std::string> names;
+  for (const auto& wall : walls) names.push_back(wall.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"w.hopper z0", "w.hopper z1", "w.hopper z1_2", "w.4"}));
+}
+
+}  // namespace
+}  // namespace granrad
