@@ -64,14 +64,6 @@ Handle text_type(std::size_t length) {
   return type;
 }
 
-/// Text of variable length, as older files have it.
-Handle variable_text_type() {
-  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type, H5T_VARIABLE);
-  H5Tset_cset(type, H5T_CSET_UTF8);
-  return type;
-}
-
 /// Creation properties of an object that stores no time of its making: equal content is equal bytes.
 Handle without_clock(hid_t kind) {
   Handle list(H5Pcreate(kind), H5Pclose);
@@ -392,7 +384,7 @@ std::string Hdf5Reader::text_attribute(const std::string& object, const std::str
     impl_->unexpected(fmt::format("attribute {} of {} must be a text", name, object));
   if (H5Tis_variable_str(type) > 0) {
     char* value = nullptr;
-    if (!Hdf5Heap(impl_->name).is_sound() || H5Aread(found, variable_text_type(), &value) < 0)
+    if (!Hdf5Heap(impl_->name).is_sound() || H5Aread(found, type, &value) < 0)
       impl_->damaged(name);
     const std::string copy(value ? value : "");
     H5free_memory(value);

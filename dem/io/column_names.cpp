@@ -101,7 +101,7 @@ std::string plain(std::string_view name) {
                            "(rad/s)", "[rad/s]", "(w)", "[w]"}) {
     const std::string_view end(unit);
     if (text.size() > end.size() && text.ends_with(end)) {
-      text.resize(text.size() - end.size());
+      text.erase(text.size() - end.size());
       break;
     }
   }

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "dem/base/error.h"
 #include "dem/base/hdf5_file.h"
@@ -160,10 +162,37 @@ void read_spent(const Hdf5Reader& in, ViewFactorFile& content) {
   content.hot_walls = in.text_attribute("/spent", "hot_walls");
 }
 
+/// What is read may be anything: no index, length or offset is used before it is known to be sound.
+void sound(bool holds, const char* what) {
+  if (!holds) throw IoError(fmt::format("{} is inconsistent (the file is damaged)", what));
+}
+
+bool all_finite(const std::vector<double>& values, double least) {
+  return std::all_of(values.begin(), values.end(), [&](double v) { return std::isfinite(v) && v >= least; });
+}
+
+/// Rises from 0 to `total` in `count` parts.
+bool are_parts(const std::vector<std::int64_t>& begin, std::size_t count, std::size_t total) {
+  return begin.size() == count + 1 && begin.front() == 0 && std::is_sorted(begin.begin(), begin.end()) &&
+         begin.back() == static_cast<std::int64_t>(total);
+}
+
+/// Rows of `surfaces` columns, in rising order.
+void refuse_unsound(const SparsePattern& pattern, std::size_t surfaces, const char* what) {
+  sound(are_parts(pattern.row_begin, surfaces, pattern.column.size()), what);
+  for (std::size_t i = 0; i < surfaces; ++i)
+    for (auto k = pattern.row_begin[i]; k < pattern.row_begin[i + 1]; ++k) {
+      const auto column = pattern.column[static_cast<std::size_t>(k)];
+      sound(column >= 0 && column < static_cast<std::int64_t>(surfaces) &&
+                (k == pattern.row_begin[i] || pattern.column[static_cast<std::size_t>(k) - 1] < column),
+            what);
+    }
+}
+
 WallRole role_of(const std::string& text) {
   for (const auto role : {WallRole::isothermal, WallRole::adiabatic, WallRole::open, WallRole::excluded})
     if (text == to_string(role)) return role;
-  throw InputError(fmt::format("wall_role = '{}' (not a role) trace the snapshot again", text));
+  throw IoError(advised(fmt::format("wall_role = '{}' (not a role)", text), "trace the snapshot again"));
 }
 
 void read_walls(const Hdf5Reader& in, Enclosure& e, const std::vector<std::string>& names) {
@@ -172,16 +201,29 @@ void read_walls(const Hdf5Reader& in, Enclosure& e, const std::vector<std::strin
   const auto triangle = read_some<std::int32_t>(in, "/snapshot/wall_triangle", 3);
   const auto triangle_begin = in.read<std::int64_t>("/snapshot/wall_triangle_begin");
   if (vertex_begin.size() < 2) return;
+  const std::size_t walls = vertex_begin.size() - 1;
   const auto role = in.read_texts("/snapshot/wall_role");
   const auto temperature = in.read<double>("/snapshot/wall_temperature");
   const auto emissivity = in.read<double>("/snapshot/wall_emissivity");
-  for (std::size_t w = 0; w + 1 < vertex_begin.size(); ++w) {
+  sound(are_parts(vertex_begin, walls, vertex.size()) &&
+            are_parts(triangle_begin, walls, triangle.size() / 3) && role.size() == walls &&
+            temperature.size() == walls && emissivity.size() == walls && all_finite(temperature, 0) &&
+            all_finite(emissivity, 0),
+        "/snapshot (walls)");
+  for (std::size_t w = 0; w < walls; ++w) {
     Wall wall;
     wall.name = names.at(e.sphere_count() + w);
     wall.vertices.assign(vertex.begin() + vertex_begin[w], vertex.begin() + vertex_begin[w + 1]);
     for (auto t = static_cast<std::size_t>(triangle_begin[w]);
          t < static_cast<std::size_t>(triangle_begin[w + 1]); ++t)
       wall.triangles.push_back({triangle[3 * t], triangle[3 * t + 1], triangle[3 * t + 2]});
+    for (const auto& t : wall.triangles)
+      for (const std::int32_t corner : t)
+        sound(corner >= 0 && corner < static_cast<std::int64_t>(wall.vertices.size()),
+              "/snapshot/wall_triangle");
+    sound(wall.vertices.size() >= 3 && std::all_of(wall.vertices.begin(), wall.vertices.end(),
+                                                   [](const Vec3& v) { return is_finite(v); }),
+          "/snapshot/wall_vertex");
     wall.role = role_of(role.at(w));
     wall.temperature_K = temperature.at(w);
     wall.emissivity = emissivity.at(w);
@@ -195,20 +237,35 @@ Enclosure read_enclosure(const Hdf5Reader& in) {
   e.centre_m = read_points(in, "/snapshot/centre");
   e.radius_m = read_some<double>(in, "/snapshot/radius");
   e.particle = read_some<std::int32_t>(in, "/snapshot/particle");
-  read_walls(in, e, in.read_texts("/surfaces/name"));
+  sound(e.radius_m.size() == e.centre_m.size() && e.particle.size() == e.centre_m.size() &&
+            all_finite(e.radius_m, std::numeric_limits<double>::min()) &&
+            std::all_of(e.centre_m.begin(), e.centre_m.end(), [](const Vec3& c) { return is_finite(c); }) &&
+            std::all_of(e.particle.begin(), e.particle.end(), [](std::int32_t p) { return p >= 0; }),
+        "/snapshot (spheres)");
+  const auto names = in.read_texts("/surfaces/name");
+  const auto walls = in.read<std::int64_t>("/snapshot/wall_vertex_begin");
+  sound(names.size() == e.sphere_count() + std::max<std::size_t>(walls.size(), 1), "/surfaces/name");
+  read_walls(in, e, names);
   const auto box = read_points(in, "/snapshot/box");
+  sound(box.size() == 2 && is_finite(box[0]) && is_finite(box[1]), "/snapshot/box");
   e.box = {box.at(0), box.at(1)};
   for (int axis = 0; axis < 3; ++axis)
     e.periodic[axis] = in.integer_attribute("/snapshot", periodic_name[axis]) != 0;
   return e;
 }
 
-HitCounts read_rays(const Hdf5Reader& in) {
+HitCounts read_rays(const Hdf5Reader& in, std::size_t surfaces) {
   HitCounts counts;
   counts.launched = in.read<std::int64_t>("/rays/launched");
   counts.pattern.row_begin = in.read<std::int64_t>("/rays/row_begin");
   counts.pattern.column = read_some<std::int32_t>(in, "/rays/column");
   counts.hits = read_some<std::int64_t>(in, "/rays/hits");
+  const auto not_negative = [](std::int64_t count) { return count >= 0; };
+  sound(counts.launched.size() == surfaces && counts.hits.size() == counts.pattern.column.size() &&
+            std::all_of(counts.launched.begin(), counts.launched.end(), not_negative) &&
+            std::all_of(counts.hits.begin(), counts.hits.end(), not_negative),
+        "/rays");
+  refuse_unsound(counts.pattern, surfaces, "/rays");
   for (std::size_t kind = 0; kind < pair_kind_names.size(); ++kind)
     counts.variance_factor[kind] =
         read_some<double>(in, fmt::format("/rays/variance_factor/{}", pair_kind_names[kind]));
@@ -227,6 +284,10 @@ ExchangeAreas read_closed(const Hdf5Reader& in, const std::vector<double>& area_
   closed.pattern.column = read_some<std::int32_t>(in, "/view_factors/column");
   closed.value = read_some<double>(in, "/view_factors/value");
   const auto error = read_some<double>(in, "/view_factors/standard_error");
+  refuse_unsound(closed.pattern, area_m2.size(), "/view_factors");
+  sound(closed.value.size() == closed.pattern.column.size() && error.size() == closed.value.size() &&
+            all_finite(closed.value, 0) && all_finite(error, 0),
+        "/view_factors");
   for (std::size_t i = 0; i < area_m2.size(); ++i)
     for (auto k = closed.pattern.row_begin[i]; k < closed.pattern.row_begin[i + 1]; ++k) {
       const auto at = static_cast<std::size_t>(k);
@@ -234,6 +295,46 @@ ExchangeAreas read_closed(const Hdf5Reader& in, const std::vector<double>& area_
       closed.variance.push_back(error[at] * error[at] * area_m2[i] * area_m2[i]);
     }
   return closed;
+}
+
+void check_format(const Hdf5Reader& in, const std::string& file) {
+  if (!in.has_attribute("/", "format") || in.text_attribute("/", "format") != format_name)
+    throw InputError(fmt::format("{}: not a view-factor file (no format = \"{}\") make one with vfgen trace",
+                                 file, format_name));
+  if (const auto version = in.integer_attribute("/", "version"); version != view_factor_version)
+    throw InputError(
+        fmt::format("{}: version = {} (this program reads {}) {}", file, version, view_factor_version,
+                    version > view_factor_version ? "use a newer program" : "trace the snapshot again"));
+}
+
+ViewFactorFile read_content(const Hdf5Reader& in) {
+  ViewFactorFile content;
+  content.enclosure = read_enclosure(in);
+  content.emissivity = in.read<double>("/surfaces/emissivity");
+  const std::size_t surfaces = content.enclosure.surface_count();
+  content.counts = read_rays(in, surfaces);
+  auto area = in.read<double>("/surfaces/area");
+  sound(area.size() == surfaces && content.emissivity.size() == surfaces && all_finite(area, 0) &&
+            all_finite(content.emissivity, 0) &&
+            *std::max_element(content.emissivity.begin(), content.emissivity.end()) <= 1,
+        "/surfaces");
+  for (std::size_t i = 0; i < area.size(); ++i) area[i] *= content.emissivity[i];
+  content.closed = read_closed(in, area);
+  content.counts.area_m2 = area;
+  content.counts.spheres = static_cast<std::int32_t>(content.enclosure.sphere_count());
+  content.counts.area_m2.back() = 0;
+  content.method = in.text_attribute("/", "method");
+  content.seed = static_cast<std::uint64_t>(in.integer_attribute("/", "seed"));
+  content.closure = in.text_attribute("/", "closure") == "row_sum" ? Closure::row_sum : Closure::reciprocal;
+  content.closure_correction_max = in.real_attribute("/", "closure_correction_max");
+  content.origin = in.text_attribute("/snapshot", "origin");
+  content.check.closure_defect = in.real_attribute("/", "closure_defect");
+  content.check.reciprocity_chi2 = in.real_attribute("/", "reciprocity_chi2");
+  content.check.mean_chord_ratio = in.real_attribute("/", "mean_chord_ratio");
+  content.check.failed = in.text_attribute("/", "failed");
+  content.check.leaked = content.counts.leaked;
+  read_spent(in, content);
+  return content;
 }
 
 }  // namespace
@@ -253,35 +354,13 @@ void write_view_factors(const std::filesystem::path& file, const ViewFactorFile&
 
 ViewFactorFile read_view_factors(const std::filesystem::path& file) {
   const Hdf5Reader in(file);
-  if (!in.has_attribute("/", "format") || in.text_attribute("/", "format") != format_name)
-    throw InputError(fmt::format("{}: not a view-factor file (no format = \"{}\") make one with vfgen trace",
-                                 file.string(), format_name));
-  if (const auto version = in.integer_attribute("/", "version"); version != view_factor_version)
-    throw InputError(fmt::format(
-        "{}: version = {} (this program reads {}) {}", file.string(), version, view_factor_version,
-        version > view_factor_version ? "use a newer program" : "trace the snapshot again"));
-  ViewFactorFile content;
-  content.enclosure = read_enclosure(in);
-  content.emissivity = in.read<double>("/surfaces/emissivity");
-  content.counts = read_rays(in);
-  auto area = in.read<double>("/surfaces/area");
-  for (std::size_t i = 0; i < area.size(); ++i) area[i] *= content.emissivity[i];
-  content.closed = read_closed(in, area);
-  content.counts.area_m2 = area;
-  content.counts.spheres = static_cast<std::int32_t>(content.enclosure.sphere_count());
-  content.counts.area_m2.back() = 0;
-  content.method = in.text_attribute("/", "method");
-  content.seed = static_cast<std::uint64_t>(in.integer_attribute("/", "seed"));
-  content.closure = in.text_attribute("/", "closure") == "row_sum" ? Closure::row_sum : Closure::reciprocal;
-  content.closure_correction_max = in.real_attribute("/", "closure_correction_max");
-  content.origin = in.text_attribute("/snapshot", "origin");
-  content.check.closure_defect = in.real_attribute("/", "closure_defect");
-  content.check.reciprocity_chi2 = in.real_attribute("/", "reciprocity_chi2");
-  content.check.mean_chord_ratio = in.real_attribute("/", "mean_chord_ratio");
-  content.check.failed = in.text_attribute("/", "failed");
-  content.check.leaked = content.counts.leaked;
-  read_spent(in, content);
-  return content;
+  check_format(in, file.string());
+  try {
+    return read_content(in);
+  } catch (const Error& error) {  // whatever is missing or wrong inside: the file is not as it was written
+    const std::string what = error.what();
+    throw IoError(what.starts_with(file.string()) ? what : fmt::format("{}: {}", file.string(), what));
+  }
 }
 
 }  // namespace granrad
