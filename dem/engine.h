@@ -4,6 +4,11 @@
 
 namespace granrad {
 
+/// Threads an engine works with now, of those it may use.
+struct EngineThreads {
+  int used = 1, most = 1;
+};
+
 /// Moves particles: turns a Bed into a later Bed. One of the two virtual seams of the project.
 ///
 /// Contract: everything the future depends on stands in the Bed (positions, velocities, contact memory,
@@ -20,6 +25,8 @@ class Engine {
   /// As near_pairs(bed, max_gap_m) for the bed that `advance` left, without a second search where the
   /// engine still holds its list.
   virtual NearPairs near_pairs(const Bed& bed, double max_gap_m) = 0;
+
+  virtual EngineThreads threads() const { return {}; }
 };
 
 }  // namespace granrad

@@ -97,7 +97,9 @@ int follow(Simulation& simulation, const Case& c, const CaseFolder& folder, cons
     simulation.advance();
     if (plan.row_at(simulation.tick())) {
       history.append(row = simulation.row());
-      if (options.verbose()) fmt::print(stderr, "{}\n", progress_detail(simulation, row));
+      if (options.verbose())
+        fmt::print(stderr, "{}  threads {} of {}\n", progress_detail(simulation, row),
+                   simulation.flow_threads().used, simulation.flow_threads().most);
     }
     const int stop = stop_requested(options, start);
     if (stop || take_checkpoint_request() || plan.frame_at(simulation.tick())) save(simulation, folder);
@@ -109,6 +111,9 @@ int follow(Simulation& simulation, const Case& c, const CaseFolder& folder, cons
     }
   }
   progress.finish();
+  if (const auto threads = simulation.flow_threads(); threads.most > 1)
+    say(options, fmt::format("threads {} of {} for the flow ({} particles)", threads.used, threads.most,
+                             simulation.bed().size()));
   return exit_ok;
 }
 

@@ -18,6 +18,8 @@ class Flow {
   void advance(Bed& bed, const TimePlan& plan, std::int64_t tick);
   /// Pairs within the gap, from the engine's own list; found once in a frozen bed.
   const NearPairs& near_pairs(const Bed& bed, double max_gap_m);
+  /// Threads the engine works with; of a frozen bed 1 of 1.
+  EngineThreads threads() const { return engine_ ? engine_->threads() : EngineThreads{}; }
   bool moves() const { return scene_.engine != EngineKind::none; }
 
   FeedTotals totals() const { return feed_ ? feed_->totals() : FeedTotals{}; }

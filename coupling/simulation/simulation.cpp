@@ -1,7 +1,9 @@
 #include "coupling/simulation/simulation.h"
 
 #include <fmt/core.h>
+#include <omp.h>
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 
@@ -26,6 +28,19 @@ class Stopwatch {
  private:
   double& seconds_;
   std::chrono::steady_clock::time_point begin_;
+};
+
+/// The short loops beside the flow get as many threads as the flow found worth while.
+class ThreadsOfFlow {
+ public:
+  explicit ThreadsOfFlow(const Flow& flow) : before_(omp_get_max_threads()) {
+    if (flow.moves()) omp_set_num_threads(std::min(flow.threads().used, before_));
+  }
+  ~ThreadsOfFlow() { omp_set_num_threads(before_); }
+  ThreadsOfFlow(const ThreadsOfFlow&) = delete;
+
+ private:
+  int before_;
 };
 
 std::int64_t identity(const Case& c) {
@@ -77,6 +92,7 @@ void Simulation::advance() {
   }
   {
     Stopwatch watch(seconds_.conduction);
+    const ThreadsOfFlow threads(flow_);
     heat_.conduct(bed_, flow_);
   }
   if (plan_.radiation_at(tick_)) {
@@ -84,6 +100,7 @@ void Simulation::advance() {
     heat_.radiate(bed_);
   }
   Stopwatch watch(seconds_.conduction);
+  const ThreadsOfFlow threads(flow_);
   heat_.advance(bed_, plan_.heat_step_s(tick_));
 }
 

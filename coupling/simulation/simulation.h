@@ -37,6 +37,7 @@ class Simulation {
   std::int64_t tick() const { return tick_; }
   const Bed& bed() const { return bed_; }
   const TimePlan& plan() const { return plan_; }
+  EngineThreads flow_threads() const { return flow_.threads(); }
   const StepLimits& limits() const { return limits_; }
   double conduction_limit_s() const { return conduction_limit_s_; }
   const HeatModel& heat() const { return heat_; }

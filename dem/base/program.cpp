@@ -12,6 +12,7 @@
 #include <exception>
 
 #include "dem/base/error.h"
+#include "dem/base/processors.h"
 
 namespace granrad {
 
@@ -48,6 +49,7 @@ const double started_s = now_s();
 
 int run_program(const std::string& name, const std::function<int()>& body) {
   try {
+    respect_granted_processors();
     const int code = body();
     return interrupt_signal() ? 128 + interrupt_signal() : code;
   } catch (const Error& error) {

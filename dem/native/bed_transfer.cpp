@@ -50,10 +50,9 @@ void check(const Bed& bed) {
     if (!bed.periodic[a]) continue;
     const double largest = *std::max_element(bed.radius_m.begin(), bed.radius_m.end());
     if (bed.box.size()[a] < 4 * largest)
-      problems.push_back(
-          advised(fmt::format("box.size_m[{}] = {} (periodic: a particle would touch itself)", a,
-                              bed.box.size()[a]),
-                  fmt::format("try at least {}", 4 * largest)));
+      problems.push_back(advised(
+          fmt::format("box.size_m[{}] = {} (periodic: a particle would touch itself)", a, bed.box.size()[a]),
+          fmt::format("try at least {}", 4 * largest)));
   }
   if (!problems.empty()) throw InputError(problems);
 }
@@ -99,10 +98,11 @@ void BedTransfer::lay_out(const Bed& bed, Rows& rows, int threads) {
       rows.position[4 * (n + 2 * t + 1) + a] = bed.periodic[a] ? 0.5 * bed.box.size()[a] : 1e6;
 }
 
-BedTransfer::Change BedTransfer::load(const Bed& bed, Rows& rows, double half_step_s, int threads) {
+BedTransfer::Change BedTransfer::load(const Bed& bed, Rows& rows, double half_step_s, int threads,
+                                      int most_threads) {
   auto change = Change::none;
   if (rows.count != static_cast<std::int64_t>(bed.size()) || id_.empty() || !same_particles(bed)) {
-    lay_out(bed, rows, threads);
+    lay_out(bed, rows, most_threads);
     change = Change::particles;
   } else if (!same_bits(bed.contacts, contacts_)) {
     change = Change::memory;

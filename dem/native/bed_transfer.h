@@ -14,7 +14,8 @@ class BedTransfer {
   enum class Change { none, moved, memory, particles };
   /// Loads the Bed; positions are drifted half a step, to where forces are evaluated. Says what differs from
   /// the Bed stored last (the strongest of the changes). Throws InputError for a Bed that makes no sense.
-  Change load(const Bed& bed, Rows& rows, double half_step_s, int threads);
+  /// `most_threads`: rows behind the last are made for so many.
+  Change load(const Bed& bed, Rows& rows, double half_step_s, int threads, int most_threads);
   /// The memories of the Bed by index, after a load that reported `memory` or `particles`.
   static std::vector<Memory> memories(const Bed& bed);
   /// Writes positions, velocities and springs back. Throws NumericalError for a value that is not a number.

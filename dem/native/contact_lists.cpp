@@ -32,6 +32,14 @@ void ContactLists::restart(std::vector<Memory> memories) {
   life_ = 0;
 }
 
+void ContactLists::deal(int threads, const Rows& rows) {
+  if (!stale_) memories_ = collect(rows);
+  shares_ = std::vector<Share>(threads);
+  for (auto& s : shares_) s.outbox.resize(threads);
+  stale_ = walls_stale_ = true;
+  life_ = 0;
+}
+
 double ContactLists::margin_of(double speed, std::int64_t steps) const {
   return diagonal * (speed + spare_speed_m_s_) * step_s_ * double(steps);
 }

@@ -24,6 +24,8 @@ class ContactLists {
 
   /// Forgets the lists; springs come from `memories` when they are made again.
   void restart(std::vector<Memory> memories);
+  /// Deals the rows out to this many shares when lists are made next, which is before the next step.
+  void deal(int threads, const Rows& rows);
   /// Positions or velocities were changed from outside.
   void touch() { life_ = 0; }
   void walls_changed() { walls_stale_ = true, life_ = 0; }
@@ -34,6 +36,7 @@ class ContactLists {
   /// `steps` were done; `limit_broken`: the lists must be refreshed whatever was promised.
   void spend(std::int64_t steps, bool limit_broken);
 
+  int threads() const { return static_cast<int>(shares_.size()); }
   std::vector<Share>& shares() { return shares_; }
   const std::vector<Share>& shares() const { return shares_; }
   /// Someone reads the near lists: those made from now on stay complete for this gap as long as they live.
@@ -74,7 +77,6 @@ class ContactLists {
   void find_walls(const Rows& rows, const Periods& periods, const WallSurface& surface);
   void refresh(Rows& rows, const Model& model, const Periods& periods, const Bed& bed,
                const WallSurface& surface);
-  int threads() const { return static_cast<int>(shares_.size()); }
   Vec3 drift() const { return mean_velocity_ * (step_s_ * double(steps_since_sort_)); }
 
   const Kernels& kernels_;

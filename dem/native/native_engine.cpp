@@ -4,6 +4,8 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <bit>
+#include <chrono>
 #include <cmath>
 
 #include "dem/base/error.h"
@@ -12,6 +14,7 @@
 #include "dem/native/model.h"
 #include "dem/native/near_from_lists.h"
 #include "dem/native/step_barrier.h"
+#include "dem/native/thread_choice.h"
 #include "dem/step_clock.h"
 
 namespace granrad::native {
@@ -30,11 +33,16 @@ bool same_box(const Bed& bed, const Box& box, const Periods& periods) {
   return same;
 }
 
-/// As many threads as asked for; else as find enough work to be worth their barriers.
-int useful_threads(int asked, std::int64_t particles) {
+/// Threads that find enough work to be worth their barriers, of `most`; few different numbers as a bed grows.
+int useful_threads(int most, std::int64_t particles) {
   constexpr std::int64_t particles_each = 400;
-  if (asked > 0) return asked;
-  return static_cast<int>(std::clamp<std::int64_t>(particles / particles_each, 1, omp_get_max_threads()));
+  const std::int64_t useful = particles / particles_each;
+  if (useful >= most) return most;
+  return std::max(1, static_cast<int>(std::bit_floor(static_cast<std::uint64_t>(useful))));
+}
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 }  // namespace
@@ -52,6 +60,8 @@ struct NativeEngine::Impl {
   std::unique_ptr<Periods> periods;
   Box box{};
   Model model;
+  ThreadChoice choice{1};
+  int most_threads = 0;  ///< rows are laid out for
   double left_at_s = 0;  ///< time of the Bed after the last advance
   std::int64_t list_reads = 0;
 
@@ -59,6 +69,7 @@ struct NativeEngine::Impl {
       : gravity(g), step_s(step), options(o), kernels(o.kernels ? *o.kernels : select_kernels()) {}
 
   void load(const Bed& bed);
+  void choose_threads(std::int64_t particles);
   void load_walls(const Bed& bed);
   std::int64_t run(std::int64_t steps, bool finishes, bool& limit_broken);
   void check_overlaps(const Bed& bed);
@@ -81,17 +92,24 @@ void NativeEngine::Impl::load_walls(const Bed& bed) {
   if (!known && lists) lists->walls_changed();
 }
 
+void NativeEngine::Impl::choose_threads(std::int64_t particles) {
+  const int most = options.threads > 0 ? options.threads : omp_get_max_threads();
+  if (most != most_threads) most_threads = most, rows.count = -1;
+  const bool fixed = !options.adapts && options.threads > 0;
+  const int useful = fixed ? most : useful_threads(most, particles);
+  if (choice.most() != useful) choice = ThreadChoice(useful, !options.adapts);
+}
+
 void NativeEngine::Impl::load(const Bed& bed) {
-  const int threads = lists ? static_cast<int>(lists->shares().size()) : 0;
-  const int wanted = useful_threads(options.threads, static_cast<std::int64_t>(bed.size()));
-  if (threads != wanted || !same_box(bed, box, *periods)) {
-    lists = std::make_unique<ContactLists>(kernels, wanted, options.schedule);
+  choose_threads(static_cast<std::int64_t>(bed.size()));
+  if (!lists || !same_box(bed, box, *periods)) {
+    lists = std::make_unique<ContactLists>(kernels, choice.threads(), options.schedule);
     periods = std::make_unique<Periods>(bed);
     box = bed.box;
     rows.count = -1;
   }
   load_walls(bed);
-  const auto change = transfer.load(bed, rows, 0.5 * step_s, wanted);
+  const auto change = transfer.load(bed, rows, 0.5 * step_s, choice.threads(), most_threads);
   if (options.precision == Precision::mixed) rows.motion.resize(rows.velocity.size());
   if (change == BedTransfer::Change::particles)
     model = make_model(bed, rows, *periods, gravity, step_s, options.precision);
@@ -204,8 +222,10 @@ void NativeEngine::advance(Bed& bed, double until_s) {
   e.load(bed);
   std::int64_t step = bed.step;
   while (step < last) {
-    const double opens = next_opening_s(e.walls, clock.time_s(step));
+    if (e.choice.threads() != e.lists->threads()) e.lists->deal(e.choice.threads(), e.rows);
+    const double opens = next_opening_s(e.walls, clock.time_s(step)), started_s = now_s();
     auto steps = std::min(last - step, e.lists->prepare(e.rows, e.model, *e.periods, bed, *e.surface));
+    steps = e.choice.longest_piece(steps);
     if (opens < clock.time_s(step + steps))
       steps = std::clamp<std::int64_t>(clock.first_at_or_after(opens) - step, 1, steps);
     bool limit_broken = false;
@@ -213,6 +233,8 @@ void NativeEngine::advance(Bed& bed, double until_s) {
     step += done;
     e.lists->spend(done, limit_broken);
     e.check_overlaps(bed);
+    const double ended_s = now_s();
+    e.choice.spent(done, ended_s - started_s, ended_s);
     if (clock.time_s(step) >= opens) {
       e.surface->set_time(e.walls, clock.time_s(step));
       e.lists->walls_changed();
@@ -238,6 +260,10 @@ NearPairs NativeEngine::near_pairs(const Bed& bed, double max_gap_m) {
                          : granrad::near_walls(bed, max_gap_m);
   }
   return pairs;
+}
+
+EngineThreads NativeEngine::threads() const {
+  return {impl_->choice.threads(), impl_->most_threads};
 }
 
 EngineCounts NativeEngine::counts() const {
@@ -267,7 +293,7 @@ namespace granrad {
 std::unique_ptr<Engine> make_native_engine(const Bed& bed, const Vec3& gravity_m_s2, double step_s,
                                            int threads, Precision precision) {
   native::EngineOptions options;
-  options.threads = threads, options.precision = precision;
+  options.threads = threads, options.precision = precision, options.adapts = true;
   return std::make_unique<native::NativeEngine>(bed, gravity_m_s2, step_s, options);
 }
 

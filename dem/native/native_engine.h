@@ -9,7 +9,8 @@ namespace granrad::native {
 
 /// What tests and the bench may choose beside the public interface; results do not depend on any of it.
 struct EngineOptions {
-  int threads = 0;  ///< 0: OpenMP's default
+  int threads = 0;      ///< 0: OpenMP's default
+  bool adapts = false;  ///< fewer where that is faster, found out in the run; else `threads`, as they are
   ListSchedule schedule{};
   Precision precision = Precision::full;
   const Kernels* kernels = nullptr;  ///< nullptr: select_kernels()
@@ -30,6 +31,7 @@ class NativeEngine : public Engine {
   ~NativeEngine() override;
   void advance(Bed& bed, double until_s) override;
   NearPairs near_pairs(const Bed& bed, double max_gap_m) override;
+  EngineThreads threads() const override;
   EngineCounts counts() const;
 
  private:
