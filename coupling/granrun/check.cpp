@@ -124,10 +124,11 @@ void print_limits(const Simulation& simulation) {
 
 }  // namespace
 
-int check_case(const Case& c, const RunOptions& options) {
+int check_case(const Case& c, const RunOptions& options, bool defaults) {
   Simulation simulation(c, options.threads);
   simulation.start();
-  if (!options.quiet()) fmt::print("# the scene in force\n{}\n", c.effective_text);
+  if (!options.quiet())
+    fmt::print("# the scene in force\n{}\n", defaults ? c.text_with_defaults : c.effective_text);
   Verdict verdict;
   judge_flow(c, verdict);
   judge_conduction(c, verdict);

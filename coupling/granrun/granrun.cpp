@@ -3,10 +3,13 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <memory>
 
 #include "coupling/granrun/case_report.h"
 #include "coupling/granrun/check.h"
 #include "coupling/granrun/export.h"
+#include "coupling/granrun/keys.h"
+#include "coupling/granrun/new_scene.h"
 #include "coupling/granrun/run.h"
 #include "coupling/granrun/sweep.h"
 #include "coupling/granrun/validate.h"
@@ -97,7 +100,38 @@ void add_check(CLI::App& app, Arguments& a, Body& body) {
   auto* check =
       app.add_subcommand("check", "validate a scene; print limits, what is modelled and what is not");
   add_scene(check, a);
-  check->callback([&] { body = [&] { return check_case(read_case(a.scene, a.overrides), a.options); }; });
+  const auto defaults = std::make_shared<bool>(false);
+  check->add_flag("--defaults", *defaults, "print the scene with every default in force, as comments");
+  check->callback([&, defaults] {
+    body = [&, defaults] { return check_case(read_case(a.scene, a.overrides), a.options, *defaults); };
+  });
+}
+
+void add_new(CLI::App& app, Body& body) {
+  auto* starter = app.add_subcommand("new", "copy an example scene with what it needs");
+  const auto file = std::make_shared<std::string>(), example = std::make_shared<std::string>();
+  starter->add_option("FILE", *file, "the new scene")->required();
+  starter->add_option("--from", *example, "plug, hopper, frozen, or any scene in share/granrad/scenes")
+      ->default_val("plug");
+  starter->callback([&body, file, example] { body = [=] { return new_scene(*file, *example); }; });
+}
+
+void add_keys(CLI::App& app, Body& body) {
+  struct Asked {
+    std::string of = "scene";
+    bool markdown = false, toml = false, schema = false;
+  };
+  const auto asked = std::make_shared<Asked>();
+  auto* keys = app.add_subcommand("keys", "every key of a scene: unit, range, default, meaning");
+  keys->add_option("OF", asked->of, "scene, or table (of a correlation)")
+      ->check(CLI::IsMember({"scene", "table"}))
+      ->capture_default_str();
+  auto* markdown = keys->add_flag("--md", asked->markdown, "a page in Markdown (the default)");
+  auto* toml = keys->add_flag("--toml", asked->toml, "a commented file to start from")->excludes(markdown);
+  keys->add_flag("--schema", asked->schema, "a JSON schema for editors")->excludes(markdown)->excludes(toml);
+  keys->callback([&body, asked] {
+    body = [asked] { return print_keys(asked->of, asked->toml ? "toml" : asked->schema ? "schema" : "md"); };
+  });
 }
 
 void add_validate(CLI::App& app, Arguments& a, Body& body) {
@@ -146,6 +180,8 @@ int granrun(int argc, char** argv) {
   Arguments a;
   Body body;
   for (auto* add : {add_run, add_check, add_validate, add_sweep, add_report, add_export}) add(app, a, body);
+  add_new(app, body);
+  add_keys(app, body);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -8,6 +8,7 @@
 #include "coupling/simulation/flow.h"
 #include "coupling/simulation/heat_model.h"
 #include "coupling/simulation/radiation_source.h"
+#include "dem/base/data_folder.h"
 #include "dem/base/error.h"
 #include "dem/base/program.h"
 #include "dem/base/text_file.h"
@@ -42,7 +43,7 @@ RadiationSettings source(const Case& c, RadiationKind kind, double rays) {
   if (kind == RadiationKind::correlation)
     settings.table = c.heat.radiation.kind == RadiationKind::correlation
                          ? c.heat.radiation.table
-                         : fs::path(GRANRAD_DATA_DIR) / "correlations" / "li_2024_printed.toml";
+                         : data_folder() / "correlations" / "li_2024_printed.toml";
   return settings;
 }
 

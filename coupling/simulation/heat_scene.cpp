@@ -35,14 +35,15 @@ RadiationKind kind_from(const std::string& name) {
 std::optional<GasLens> read_gas(TomlTable table) {
   if (!table.present()) return {};
   GasLens gas;
-  gas.conductivity_W_mK = table.number(
-      "conductivity_W_mK", {.unit = "W/(m K)", .min = 0, .min_exclusive = true}, gas.conductivity_W_mK);
-  gas.lens_radius_ratio =
-      table.number("lens_radius_ratio",
-                   {.min = 1, .max = 3, .min_exclusive = true, .why = "lens radius over particle radius"},
-                   gas.lens_radius_ratio);
+  gas.conductivity_W_mK =
+      table.number({"conductivity_W_mK", "thermal conductivity of the gas"},
+                   {.unit = "W/(m K)", .min = 0, .min_exclusive = true}, gas.conductivity_W_mK);
+  gas.lens_radius_ratio = table.number(
+      {"lens_radius_ratio", "radius within which gas between two particles conducts, over their radius"},
+      {.min = 1, .max = 3, .min_exclusive = true, .why = "lens radius over particle radius"},
+      gas.lens_radius_ratio);
   gas.minimum_gap_m = table.number(
-      "minimum_gap_m",
+      {"minimum_gap_m", "smallest gap of a gas lens, of the order of the mean free path"},
       {.unit = "m", .min = 0, .min_exclusive = true, .why = "the conductance of a closed gap is infinite"},
       gas.minimum_gap_m);
   return gas;
@@ -50,9 +51,10 @@ std::optional<GasLens> read_gas(TomlTable table) {
 
 ConductionSettings read_conduction(TomlTable table) {
   ConductionSettings conduction;
-  conduction.solid = table.boolean("solid", true);
+  conduction.solid = table.boolean({"solid", "heat flows through contacts"}, true);
   conduction.modulus_exponent =
-      table.number("modulus_exponent", {.min = 0, .max = 1, .why = "1/5 collisions, 1/3 beds at rest"}, 0.2);
+      table.number({"modulus_exponent", "of softened over real modulus in the contact radius"},
+                   {.min = 0, .max = 1, .why = "1/5 collisions, 1/3 beds at rest"}, 0.2);
   return conduction;
 }
 
@@ -60,7 +62,8 @@ int read_conduction_interval(TomlTable table, const Scene& scene) {
   if (!table.has("every_steps")) return 0;
   if (scene.engine == EngineKind::none)
     table.problem("every_steps", "has no meaning in a frozen bed (there are no DEM steps); leave it out");
-  return static_cast<int>(table.integer("every_steps", 1, 1000000));
+  return static_cast<int>(table.integer(
+      {"every_steps", "flow steps per update of conduction", "from its stability"}, 1, 1000000));
 }
 
 void check_source_against_walls(TomlTable& table, RadiationKind kind, const Scene& scene) {
@@ -113,23 +116,34 @@ void check_table(TomlTable& table, const std::filesystem::path& file, const Scen
 
 RadiationSettings read_radiation(TomlTable table, const Scene& scene, const std::string& fallback_source) {
   RadiationSettings settings;
-  const auto chosen =
-      table.choice("source", {"none", "paths", "embree", "lines", "correlation"}, fallback_source);
+  const auto chosen = table.choice(
+      {"source",
+       "paths: traced in the loop, exact; embree, lines: view factors and radiosity; correlation: view factors from a table",
+       "paths; none without [radiation]"},
+      {"none", "paths", "embree", "lines", "correlation"}, fallback_source);
   settings.kind = kind_from(chosen);
   const bool paths = settings.kind == RadiationKind::paths;
-  settings.table = table.file("table", settings.kind == RadiationKind::correlation);
-  settings.order = static_cast<int>(table.integer("order", 0, 3, 0));
-  settings.rays = table.number("rays",
+  settings.table = table.file({"table", "correlation table, for source = correlation"},
+                              settings.kind == RadiationKind::correlation);
+  settings.order = static_cast<int>(table.integer(
+      {"order", "of the radiosity over each sphere, with lines: 0 uniform, 1 to 3 spherical harmonics"}, 0, 3,
+      0));
+  settings.rays = table.number({"rays", "walks per update (paths), rays or line ends per particle (others)",
+                                "10000 (paths), 2000 (embree), 24000 (lines), 4800 (lines of order 1 to 3)"},
                                {.min = paths ? 2.0 * path_batches : 1,
                                 .max = 1e9,
                                 .why = paths ? "walks per update" : "rays per particle"},
                                default_rays(settings.kind, settings.order));
-  settings.every_s =
-      table.number("every_s", {.unit = "s", .min = 0, .min_exclusive = true}, settings.every_s);
-  settings.closure = table.choice("closure", {"reciprocal", "row_sum"}, "reciprocal") == "row_sum"
-                         ? Closure::row_sum
-                         : Closure::reciprocal;
-  settings.seed = static_cast<std::uint64_t>(table.integer("seed", 0, 1LL << 62, 1));
+  settings.every_s = table.number({"every_s", "time between updates of the radiation"},
+                                  {.unit = "s", .min = 0, .min_exclusive = true}, settings.every_s);
+  settings.closure =
+      table.choice(
+          {"closure",
+           "how view factors are made to sum to one: reciprocal keeps A_i F_ij = A_j F_ji as well; row_sum is the paper's"},
+          {"reciprocal", "row_sum"}, "reciprocal") == "row_sum"
+          ? Closure::row_sum
+          : Closure::reciprocal;
+  settings.seed = static_cast<std::uint64_t>(table.integer({"seed", "of the rays"}, 0, 1LL << 62, 1));
 
   if (table.has("table") && settings.kind != RadiationKind::correlation)
     table.problem("table",
@@ -147,21 +161,26 @@ RadiationSettings read_radiation(TomlTable table, const Scene& scene, const std:
 OutputSettings read_output(TomlTable table, const Scene& scene) {
   const double fallback = scene.end_time_s > 0 ? scene.end_time_s / 100 : 1;
   OutputSettings output;
-  output.every_s = table.number("every_s", {.unit = "s", .min = 0, .min_exclusive = true}, fallback);
-  output.frames_every_s =
-      table.number("frames_every_s", {.unit = "s", .min = 0, .min_exclusive = true}, 10 * output.every_s);
+  output.every_s = table.number({"every_s", "time between rows of history.csv", "end_time_s / 100"},
+                                {.unit = "s", .min = 0, .min_exclusive = true}, fallback);
+  output.frames_every_s = table.number({"frames_every_s", "time between frames", "10 every_s"},
+                                       {.unit = "s", .min = 0, .min_exclusive = true}, 10 * output.every_s);
   return output;
 }
 
 ValidateSettings read_validate(TomlTable table, const Scene& scene) {
   ValidateSettings validate;
-  for (auto& snapshot : table.tables("snapshot")) validate.snapshots.push_back(snapshot.file("file", true));
-  if (auto reference = table.table("reference"); reference.present())
+  for (auto& snapshot : table.tables({"snapshot", "Frozen beds to compare on"}))
+    validate.snapshots.push_back(snapshot.file({"file", "frame, CSV or dump"}, true));
+  if (auto reference =
+          table.table({"reference", "The source the others are compared with; keys as in [radiation]"});
+      reference.present())
     validate.reference = read_radiation(reference, scene, "paths");
-  for (auto& compared : table.tables("compare"))
+  for (auto& compared : table.tables({"compare", "A source to compare; keys as in [radiation]"}))
     validate.compared.push_back(read_radiation(compared, scene, "correlation"));
   if (table.has("times_s"))
-    validate.times_s = table.number_list("times_s", {.unit = "s", .min = 0, .min_exclusive = true}, 1);
+    validate.times_s = table.number_list({"times_s", "times to compare at"},
+                                         {.unit = "s", .min = 0, .min_exclusive = true}, 1);
   std::sort(validate.times_s.begin(), validate.times_s.end());
   return validate;
 }
@@ -194,13 +213,14 @@ const char* to_string(RadiationKind kind) {
 HeatScene read_heat_scene(TomlDocument& document, const Scene& scene) {
   auto root = document.root();
   HeatScene heat;
-  heat.conduction = read_conduction(root.table("conduction"));
-  heat.conduction.gas = read_gas(root.table("gas"));
-  heat.conduction_every_steps = read_conduction_interval(root.table("conduction"), scene);
-  auto radiation = root.table("radiation");
+  heat.conduction = read_conduction(root.table({"conduction", "Heat through contacts"}));
+  heat.conduction.gas = read_gas(root.table({"gas", "Heat through the gas near contacts; absent: none"}));
+  heat.conduction_every_steps =
+      read_conduction_interval(root.table({"conduction", "Heat through contacts"}), scene);
+  auto radiation = root.table({"radiation", "How radiation is exchanged; absent: no radiation"});
   heat.radiation = read_radiation(radiation, scene, radiation.present() ? "paths" : "none");
-  heat.output = read_output(root.table("output"), scene);
-  heat.validate = read_validate(root.table("validate"), scene);
+  heat.output = read_output(root.table({"output", "What is written when"}), scene);
+  heat.validate = read_validate(root.table({"validate", "What granrun validate compares"}), scene);
   check_heat_has_something_to_do(document, scene, heat);
   return heat;
 }
@@ -218,6 +238,7 @@ Case read_case(const std::filesystem::path& file, const std::vector<std::string>
   result.inputs = input_files(document);
   result.portable_text = portable_text(document, result.inputs);
   result.identity = identity_text(document, result.inputs);
+  result.text_with_defaults = document.text_with_defaults();
   return result;
 }
 

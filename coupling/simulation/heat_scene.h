@@ -57,10 +57,11 @@ HeatScene read_heat_scene(TomlDocument& document, const Scene& scene);
 struct Case {
   Scene flow;
   HeatScene heat;
-  std::string effective_text;     ///< the document in force, as TOML
-  std::vector<InputFile> inputs;  ///< every file it names
-  std::string portable_text;      ///< it, with its files where a case keeps their copies
-  std::string identity;           ///< what its frames depend on (see identity_text)
+  std::string effective_text;      ///< the document in force, as TOML
+  std::vector<InputFile> inputs;   ///< every file it names
+  std::string portable_text;       ///< it, with its files where a case keeps their copies
+  std::string identity;            ///< what its frames depend on (see identity_text)
+  std::string text_with_defaults;  ///< as effective_text, with the defaults in force as comments
 };
 
 /// Reads a scene file with `overrides` ("key=value"). Throws InputError with every problem, IoError.

@@ -64,7 +64,7 @@ void TomlDocument::State::add_at(const toml::node& node, const std::string& path
                             : fmt::format("{} = {} ({})", path, value, why));
 }
 
-KeyUse& TomlTable::Node::use(const Key& key, KeyKind kind, const NumberRule& rule) {
+KeyUse& TomlTable::Node::use(const Key& key, KeyKind kind, const NumberRule& rule, bool required) {
   KeyUse use;
   use.table = shown;
   use.at = path;
@@ -73,6 +73,7 @@ KeyUse& TomlTable::Node::use(const Key& key, KeyKind kind, const NumberRule& rul
   use.otherwise = key.otherwise;
   use.kind = kind;
   use.rule = rule;
+  use.required = required && !state->asked_for.count(path_of(key.name));
   use.given = table && table->contains(key.name);
   state->uses.push_back(std::move(use));
   return state->uses.back();

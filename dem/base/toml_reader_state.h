@@ -33,7 +33,8 @@ struct TomlDocument::State {
   std::map<std::string, std::filesystem::path> files;            ///< named and found, by path of the key
   std::set<std::string> troubled;                                ///< paths that have a problem of their own
   std::vector<KeyUse> uses;                                      ///< every reading, in order
-  const Exploration* exploring = nullptr;                        ///< no file: answers are made up
+  std::set<std::string> asked_for;         ///< exploring: has() came first, so it is optional
+  const Exploration* exploring = nullptr;  ///< no file: answers are made up
 
   void add(const Place& place, const std::string& path, std::string text);
   void add_at(const toml::node& node, const std::string& path, const std::string& why);
@@ -50,7 +51,7 @@ struct TomlTable::Node {
   std::string shown;   ///< in the reference
 
   /// Notes the reading of a key; the caller adds what it knows. Valid until the next reading.
-  KeyUse& use(const Key& key, KeyKind kind, const NumberRule& rule = {});
+  KeyUse& use(const Key& key, KeyKind kind, const NumberRule& rule = {}, bool required = false);
   toml::node* get(std::string_view key);
   std::string path_of(std::string_view key) const { return join_path(path, key); }
   bool exploring(Exploration::Depth at_least) const {

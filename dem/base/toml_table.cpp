@@ -42,7 +42,10 @@ std::string TomlTable::path() const {
 
 bool TomlTable::has(std::string_view key) const {
   node_->state->known[node_->path].emplace(key);
-  if (node_->state->exploring) return node_->exploring(Exploration::keys);
+  if (node_->state->exploring) {
+    node_->state->asked_for.insert(node_->path_of(key));
+    return node_->exploring(Exploration::keys);
+  }
   return node_->table && node_->table->contains(key);
 }
 
@@ -63,7 +66,7 @@ std::optional<double> TomlTable::optional_number(const Key& key, const NumberRul
 }
 
 double TomlTable::number(const Key& key, const NumberRule& rule) {
-  node_->use(key, KeyKind::number, rule).required = true;
+  node_->use(key, KeyKind::number, rule, true);
   const toml::node* node = node_->get(key.name);
   if (node) return node_->checked_number(*node, node_->path_of(key.name), rule);
   node_->missing(key.name, expected_number(rule));
@@ -82,8 +85,8 @@ std::int64_t TomlTable::integer(const Key& key, std::int64_t min, std::int64_t m
   KeyUse& use =
       node_->use(key, KeyKind::integer,
                  {.min = static_cast<double>(min),
-                  .max = bounded ? static_cast<double>(max) : std::numeric_limits<double>::infinity()});
-  use.required = !fallback;
+                  .max = bounded ? static_cast<double>(max) : std::numeric_limits<double>::infinity()},
+                 !fallback);
   if (fallback) use.fallback = fmt::format("{}", *fallback);
   const std::int64_t allowed = std::clamp<std::int64_t>(fallback.value_or(min), min, max);
   const std::string expected = max == std::numeric_limits<std::int64_t>::max()
@@ -104,9 +107,8 @@ std::int64_t TomlTable::integer(const Key& key, std::int64_t min, std::int64_t m
 }
 
 bool TomlTable::boolean(const Key& key, std::optional<bool> fallback) {
-  KeyUse& use = node_->use(key, KeyKind::boolean);
+  KeyUse& use = node_->use(key, KeyKind::boolean, {}, !fallback);
   use.choices = {"true", "false"};
-  use.required = !fallback;
   if (fallback) use.fallback = *fallback ? "true" : "false";
   const bool otherwise = node_->picked(key).value_or(fallback.value_or(false) ? "true" : "false") == "true";
   use.value = otherwise ? "true" : "false";
@@ -121,8 +123,7 @@ bool TomlTable::boolean(const Key& key, std::optional<bool> fallback) {
 }
 
 std::string TomlTable::string(const Key& key, std::optional<std::string> fallback) {
-  KeyUse& use = node_->use(key, KeyKind::text);
-  use.required = !fallback;
+  KeyUse& use = node_->use(key, KeyKind::text, {}, !fallback);
   if (fallback) use.fallback = quoted_text(*fallback);
   const toml::node* node = node_->get(key.name);
   if (!node) {
@@ -136,9 +137,8 @@ std::string TomlTable::string(const Key& key, std::optional<std::string> fallbac
 
 std::string TomlTable::choice(const Key& key, const std::vector<std::string>& allowed,
                               std::optional<std::string> fallback) {
-  KeyUse& use = node_->use(key, KeyKind::choice);
+  KeyUse& use = node_->use(key, KeyKind::choice, {}, !fallback);
   use.choices = allowed;
-  use.required = !fallback;
   if (fallback) use.fallback = quoted_text(*fallback);
   const std::string otherwise = node_->picked(key).value_or(fallback.value_or(allowed.front()));
   use.value = otherwise;
@@ -158,7 +158,7 @@ std::string TomlTable::choice(const Key& key, const std::vector<std::string>& al
 }
 
 fs::path TomlTable::file(const Key& key, bool required) {
-  node_->use(key, KeyKind::file).required = required;
+  node_->use(key, KeyKind::file, {}, required);
   const toml::node* node = node_->get(key.name);
   if (!node) {
     if (required) node_->missing(key.name, "the name of a file");
@@ -179,8 +179,7 @@ fs::path TomlTable::file(const Key& key, bool required) {
 }
 
 Vec3 TomlTable::vec3(const Key& key, const NumberRule& each, std::optional<Vec3> fallback) {
-  KeyUse& use = node_->use(key, KeyKind::vector, each);
-  use.required = !fallback;
+  KeyUse& use = node_->use(key, KeyKind::vector, each, !fallback);
   if (fallback) use.fallback = fmt::format("[{}, {}, {}]", fallback->x, fallback->y, fallback->z);
   const double any = placeholder(each);
   const Vec3 otherwise = fallback.value_or(Vec3{any, any, any});
@@ -191,7 +190,7 @@ Vec3 TomlTable::vec3(const Key& key, const NumberRule& each, std::optional<Vec3>
 }
 
 std::vector<Vec3> TomlTable::vec3_list(const Key& key, const NumberRule& each, std::size_t min_count) {
-  node_->use(key, KeyKind::vectors, each).required = min_count > 0;
+  node_->use(key, KeyKind::vectors, each, min_count > 0);
   std::vector<Vec3> all;
   if (const toml::array* array = node_->list(key.name, min_count, "points [x, y, z]"))
     for (std::size_t k = 0; k < array->size(); ++k)
@@ -201,7 +200,7 @@ std::vector<Vec3> TomlTable::vec3_list(const Key& key, const NumberRule& each, s
 }
 
 std::vector<double> TomlTable::number_list(const Key& key, const NumberRule& each, std::size_t min_count) {
-  node_->use(key, KeyKind::numbers, each).required = min_count > 0;
+  node_->use(key, KeyKind::numbers, each, min_count > 0);
   std::vector<double> all;
   if (const toml::array* array = node_->list(key.name, min_count, "numbers"))
     for (std::size_t k = 0; k < array->size(); ++k)
@@ -211,7 +210,7 @@ std::vector<double> TomlTable::number_list(const Key& key, const NumberRule& eac
 }
 
 std::vector<std::string> TomlTable::string_list(const Key& key, std::size_t min_count) {
-  node_->use(key, KeyKind::texts).required = min_count > 0;
+  node_->use(key, KeyKind::texts, {}, min_count > 0);
   std::vector<std::string> all;
   if (const toml::array* array = node_->list(key.name, min_count, "texts in quotes"))
     for (std::size_t k = 0; k < array->size(); ++k) {

@@ -13,9 +13,11 @@ namespace granrad {
 namespace {
 
 Material read_material(TomlTable table, const std::string& default_name) {
-  table.add_keys_from_file("file");
+  table.add_keys_from_file(
+      {"file",
+       "a file with these keys, beside the scene or installed (\"alumina.toml\"); keys given here win"});
   Material m;
-  m.name = table.string("name", default_name);
+  m.name = table.string({"name", "by which files of particles refer to it"}, default_name);
   for (const auto& n : material_numbers()) {
     const auto standard = n.standard_like ? std::optional(m.*n.standard_like) : n.standard;
     const Key key(n.key, n.meaning, n.standard_as);
@@ -25,8 +27,9 @@ Material read_material(TomlTable table, const std::string& default_name) {
 }
 
 std::vector<Material> read_materials(TomlTable root) {
-  std::vector<Material> materials{read_material(root.table("material"), "material")};
-  for (auto& table : root.tables("materials")) {
+  std::vector<Material> materials{read_material(
+      root.table({"material", "The material of particles and walls, the first of the scene"}), "material")};
+  for (auto& table : root.tables({"materials", "Further materials, by name, for particles from a file"})) {
     materials.push_back(read_material(table, fmt::format("material {}", materials.size() + 1)));
     const auto same = [&](const Material& m) { return m.name == materials.back().name; };
     if (std::count_if(materials.begin(), materials.end(), same) > 1)
@@ -48,15 +51,24 @@ double mean_diameter_of_file(TomlTable& particles, const std::filesystem::path& 
 void read_particles(TomlTable table, Scene& scene) {
   const NumberRule diameter{.unit = "m", .min = 0, .min_exclusive = true};
   const NumberRule temperature{.unit = "K", .min = 0, .min_exclusive = true};
-  scene.particle_file = table.file("file", false);
+  scene.particle_file =
+      table.file({"file", "start from these: CSV, LIGGGHTS or LAMMPS dump, or a frame"}, false);
   scene.particle_types = table.string_list(
       {"types",
        "names of the materials of the types 1, 2, ... of a dump; default: [material], then [[materials]] in their order"});
-  scene.particle_temperature_K = table.number("temperature_K", temperature, 300);
+  scene.particle_temperature_K = table.number(
+      {"temperature_K", "temperature of particles that enter or that the file gives none"}, temperature, 300);
   const bool from_feed = scene.feed.kind != FeedSettings::Kind::none;
   if (scene.particle_file.empty() && !table.has("file"))
-    scene.particle_diameter_m = table.number("diameter_m", diameter);
-  else if (const auto given = table.optional_number("diameter_m", diameter))
+    scene.particle_diameter_m = table.number(
+        {"diameter_m", "diameter of the particles; with a file that has radii, only what the feed brings",
+         "mean of the file"},
+        diameter);
+  else if (const auto given = table.optional_number(
+               {"diameter_m",
+                "diameter of the particles; with a file that has radii, only what the feed brings",
+                "mean of the file"},
+               diameter))
     scene.particle_diameter_m = *given;
   else if (!scene.particle_file.empty())
     scene.particle_diameter_m = mean_diameter_of_file(table, scene.particle_file);
@@ -65,17 +77,22 @@ void read_particles(TomlTable table, Scene& scene) {
 }
 
 void read_dem(TomlTable table, Scene& scene) {
-  const std::string engine = table.choice("engine", {"native", "liggghts", "none"}, "native");
+  const std::string engine =
+      table.choice({"engine", "native, LIGGGHTS, or a frozen bed"}, {"native", "liggghts", "none"}, "native");
   scene.engine = engine == "none"       ? EngineKind::none
                  : engine == "liggghts" ? EngineKind::liggghts
                                         : EngineKind::native;
-  const std::string precision = table.choice("precision", {"double", "mixed"}, "double");
+  const std::string precision =
+      table.choice({"precision", "of the contact law between particles; sums and positions stay double"},
+                   {"double", "mixed"}, "double");
   scene.precision = precision == "mixed" ? Precision::mixed : Precision::full;
-  scene.step_s = table.number("step_s", {.unit = "s", .min = 0, .min_exclusive = true}, 0.0);
+  scene.step_s =
+      table.number({"step_s", "time step of the flow", "a fraction of the contact time; see granrun check"},
+                   {.unit = "s", .min = 0, .min_exclusive = true}, 0.0);
 }
 
 bool radiation_is_on(TomlTable root) {
-  TomlTable radiation = root.table("radiation");
+  TomlTable radiation = root.table({"radiation", "How radiation is exchanged; absent: no radiation"});
   return radiation.present() && radiation.string("source", "paths") != "none";
 }
 
@@ -84,16 +101,17 @@ bool radiation_is_on(TomlTable root) {
 Scene read_scene(TomlDocument& document) {
   TomlTable root = document.root();
   Scene scene;
-  TomlTable general = root.table("scene");
-  scene.name = general.string("name", "scene");
-  scene.end_time_s = general.number("end_time_s", {.unit = "s", .min = 0, .min_exclusive = true});
-  scene.gravity_m_s2 = general.vec3("gravity_m_s2", {.unit = "m/s2"}, Vec3{});
+  TomlTable general = root.table({"scene", "What is run, and for how long"});
+  scene.name = general.string({"name", "title of pages"}, "scene");
+  scene.end_time_s =
+      general.number({"end_time_s", "time to run until"}, {.unit = "s", .min = 0, .min_exclusive = true});
+  scene.gravity_m_s2 = general.vec3({"gravity_m_s2", "acceleration of gravity"}, {.unit = "m/s2"}, Vec3{});
   scene.materials = read_materials(root);
-  scene.feed.kind = read_feed_kind(root.table("feed"));
-  read_particles(root.table("particles"), scene);
+  scene.feed.kind = read_feed_kind(root.table({"feed", "How particles enter and leave"}));
+  read_particles(root.table({"particles", "Where particles come from, and how large they are"}), scene);
   read_geometry(root, scene, radiation_is_on(root));
-  read_feed(root.table("feed"), scene);
-  read_dem(root.table("dem"), scene);
+  read_feed(root.table({"feed", "How particles enter and leave"}), scene);
+  read_dem(root.table({"dem", "How particles move"}), scene);
   if (scene.feed.kind == FeedSettings::Kind::plug && scene.gravity_m_s2 != Vec3{})
     general.problem("gravity_m_s2",
                     "must be zero with [feed] kind = \"plug\": particles would fall out of the plug");

@@ -21,23 +21,24 @@ class GeometryReader {
       : root_(root), scene_(scene), roles_required_(roles_required) {}
 
   void read() {
-    TomlTable box = root_.table("box");
+    TomlTable box = root_.table({"box", "The box around everything; its faces are walls unless periodic"});
     const bool box_given = box.present();
     if (box_given) read_box(box);
-    read_box_walls(box_given && box.boolean("walls", true));
-    for (auto& table : root_.tables("polygon")) add(table, {polygon(table)});
-    for (auto& table : root_.tables("mesh")) add(table, mesh(table));
+    read_box_walls(box_given && box.boolean({"walls", "faces of the box are walls"}, true));
+    for (auto& table : root_.tables({"polygon", "Planar convex walls"})) add(table, {polygon(table)});
+    for (auto& table : root_.tables({"mesh", "Walls from STL files"})) add(table, mesh(table));
     if (!box_given) box_around_walls(box);
-    read_region(root_.table("region"));
+    read_region(root_.table({"region", "Where heat transfer is computed"}));
   }
 
  private:
   void read_box(TomlTable& box) {
     const NumberRule length{.unit = "m", .min = 0, .min_exclusive = true};
-    scene_.box.min = box.vec3("origin_m", {.unit = "m"}, Vec3{});
-    scene_.box.max = scene_.box.min + box.vec3("size_m", length);
+    scene_.box.min = box.vec3({"origin_m", "lower corner of the box"}, {.unit = "m"}, Vec3{});
+    scene_.box.max = scene_.box.min + box.vec3({"size_m", "lengths of the box"}, length);
     if (!box.has("periodic")) return;
-    for (const auto& direction : box.string_list("periodic")) {
+    for (const auto& direction : box.string_list(
+             {"periodic", "directions without walls in which the scene repeats: \"x\", \"y\", \"z\""})) {
       if (direction == "x" || direction == "y" || direction == "z")
         scene_.periodic[direction[0] - 'x'] = true;
       else
@@ -46,10 +47,11 @@ class GeometryReader {
   }
 
   void read_box_walls(bool has_walls) {
-    TomlTable tables = root_.table("walls");
+    TomlTable tables =
+        root_.table({"walls", "The faces of the box: x_min, x_max, y_min, y_max, z_min, z_max"});
     const auto walls = box_walls(scene_.box);
     for (int face = 0; face < 6; ++face) {
-      TomlTable table = tables.table(walls[face].name);
+      TomlTable table = tables.table({walls[face].name, "One face of the box", {}, "FACE"});
       if (has_walls && !scene_.periodic[face / 2]) {
         Wall wall = walls[face];
         wall.contact = !(scene_.feed.kind == FeedSettings::Kind::plug && face / 2 == 2);
@@ -70,11 +72,16 @@ class GeometryReader {
       table.problem("role",
                     "missing: radiation is on, so every wall must choose \"isothermal\", \"adiabatic\", "
                     "\"open\" or \"excluded\"");
-    const std::string role = table.choice("role", roles, "adiabatic");
+    const std::string role = table.choice(
+        {"role",
+         "isothermal: held at temperature_K; adiabatic: re-radiates what it receives; open: black surroundings; excluded: left out of the exchange",
+         "required when radiation is on, else adiabatic"},
+        roles, "adiabatic");
     wall.role = static_cast<WallRole>(std::find(roles.begin(), roles.end(), role) - roles.begin());
     const bool has_temperature = wall.role == WallRole::isothermal || wall.role == WallRole::open;
     if (has_temperature)
-      wall.temperature_K = table.number("temperature_K", {.unit = "K", .min = 0, .min_exclusive = true});
+      wall.temperature_K = table.number({"temperature_K", "temperature of an isothermal or open wall"},
+                                        {.unit = "K", .min = 0, .min_exclusive = true});
     else if (table.has("temperature_K"))
       table.problem("temperature_K",
                     fmt::format("an {} wall has no temperature of its own: remove it, or choose "
@@ -86,19 +93,24 @@ class GeometryReader {
         table.problem("emissivity",
                       "an open wall is the black surroundings: remove it, or choose role = \"isothermal\"");
     } else {
-      wall.emissivity = table.number(
-          "emissivity", {.min = 0, .max = 1, .min_exclusive = true, .why = "grey diffuse surface"},
-          scene_.materials[0].emissivity);
+      wall.emissivity =
+          table.number({"emissivity", "of the wall, grey and diffuse", "emissivity of the material"},
+                       {.min = 0, .max = 1, .min_exclusive = true, .why = "grey diffuse surface"},
+                       scene_.materials[0].emissivity);
     }
-    wall.contact = table.boolean("contact", wall.contact);
-    wall.velocity_m_s = table.vec3("velocity_m_s", {.unit = "m/s"}, Vec3{});
-    wall.opens_at_s = table.number("opens_at_s", {.unit = "s", .min = 0}, wall.opens_at_s);
+    wall.contact =
+        table.boolean({"contact", "particles touch it", "true, but for the ends of a plug"}, wall.contact);
+    wall.velocity_m_s = table.vec3({"velocity_m_s", "speed of the surface, which drags particles along it"},
+                                   {.unit = "m/s"}, Vec3{});
+    wall.opens_at_s = table.number({"opens_at_s", "time at which the wall is taken away", "never"},
+                                   {.unit = "s", .min = 0}, wall.opens_at_s);
   }
 
   Wall polygon(TomlTable& table) {
     Wall wall;
-    wall.name = table.string("name");
-    wall.vertices = table.vec3_list("vertices_m", {.unit = "m"}, 3);
+    wall.name = table.string({"name", "of the wall, in results"});
+    wall.vertices = table.vec3_list(
+        {"vertices_m", "corners in order, counter-clockwise seen from the particles"}, {.unit = "m"}, 3);
     if (wall.vertices.size() >= 3)
       if (const std::string fault = polygon_fault(wall); !fault.empty()) table.problem("vertices_m", fault);
     return wall;
@@ -126,10 +138,11 @@ class GeometryReader {
   }
 
   std::vector<Wall> mesh(TomlTable& table) {
-    const std::string name = table.string("name");
-    const double scale = table.number("scale", {.min = 0, .min_exclusive = true}, 1.0);
-    const auto file = table.file("file", true);
-    const bool flip = table.boolean("flip", false);
+    const std::string name = table.string({"name", "of the wall, in results"});
+    const double scale =
+        table.number({"scale", "metres per unit of the file"}, {.min = 0, .min_exclusive = true}, 1.0);
+    const auto file = table.file({"file", "STL, text or binary; beside the scene"}, true);
+    const bool flip = table.boolean({"flip", "turn the surface inside out"}, false);
     if (file.empty()) return {};
     std::vector<Wall> walls;
     try {
@@ -192,8 +205,10 @@ class GeometryReader {
   }
 
   void read_region(TomlTable region) {
-    scene_.region.min = region.vec3("min_m", {.unit = "m"}, scene_.box.min);
-    scene_.region.max = region.vec3("max_m", {.unit = "m"}, scene_.box.max);
+    scene_.region.min =
+        region.vec3({"min_m", "lower corner", "lower corner of the box"}, {.unit = "m"}, scene_.box.min);
+    scene_.region.max =
+        region.vec3({"max_m", "upper corner", "upper corner of the box"}, {.unit = "m"}, scene_.box.max);
     const Vec3 size = scene_.region.size();
     const Box& box = scene_.box;
     const double slack = flatness * norm(box.size());

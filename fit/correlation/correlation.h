@@ -5,6 +5,8 @@
 
 namespace granrad {
 
+class TomlDocument;
+
 /// How F depends on distance.
 ///  cubic          F = c0 + c1/d* + c2/d*^2 + c3/d*^3, for pairs (pp) and walls (pw): 4 + 4 coefficients (the
 ///  paper's form) transmittance  pp: F = F_exact(d*) exp(-a (d* - 1)^b), the unobstructed two-sphere factor
@@ -113,6 +115,8 @@ class Correlation {
 
 /// Reads and validates a table. Throws IoError (cannot read) or InputError with every problem located.
 CorrelationTable read_correlation(const std::filesystem::path& file);
+/// The same of a document; `name` in messages.
+CorrelationTable read_correlation(TomlDocument& document, const std::string& name);
 CorrelationTable parse_correlation(const std::string& text, const std::string& name);
 /// Writes a table whole or not at all, so that reading it back gives the same numbers.
 void write_correlation(const std::filesystem::path& file, const CorrelationTable& table);

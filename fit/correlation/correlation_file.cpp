@@ -16,23 +16,23 @@ constexpr const char* provenance_keys[] = {"source", "method", "inputs", "create
 
 /// Name and place of every number of RowStatistics, for reading and for writing.
 struct StatisticsField {
-  const char* key;
+  const char *key, *meaning;
   double RowStatistics::*value;
   bool signed_value = false;
 };
 constexpr StatisticsField statistics_fields[] = {
-    {"pp_samples", &RowStatistics::pp_samples},
-    {"pw_samples", &RowStatistics::pw_samples},
-    {"pp_rmse", &RowStatistics::pp_rmse},
-    {"pw_rmse", &RowStatistics::pw_rmse},
-    {"pp_ray_noise", &RowStatistics::pp_ray_noise},
-    {"pw_ray_noise", &RowStatistics::pw_ray_noise},
-    {"pp_scatter", &RowStatistics::pp_scatter},
-    {"pw_scatter", &RowStatistics::pw_scatter},
-    {"pp_held_out_rmse", &RowStatistics::pp_held_out_rmse},
-    {"pw_held_out_rmse", &RowStatistics::pw_held_out_rmse},
-    {"closure_mean", &RowStatistics::closure_mean, true},
-    {"closure_rms", &RowStatistics::closure_rms},
+    {"pp_samples", "pairs of particles that were fitted", &RowStatistics::pp_samples},
+    {"pw_samples", "particles and walls that were fitted", &RowStatistics::pw_samples},
+    {"pp_rmse", "rms of fit minus traced F_pp", &RowStatistics::pp_rmse},
+    {"pw_rmse", "rms of fit minus traced F_pw", &RowStatistics::pw_rmse},
+    {"pp_ray_noise", "part of pp_rmse that is noise of the rays", &RowStatistics::pp_ray_noise},
+    {"pw_ray_noise", "part of pw_rmse that is noise of the rays", &RowStatistics::pw_ray_noise},
+    {"pp_scatter", "part of pp_rmse that is scatter of the bed", &RowStatistics::pp_scatter},
+    {"pw_scatter", "part of pw_rmse that is scatter of the bed", &RowStatistics::pw_scatter},
+    {"pp_held_out_rmse", "pp_rmse on snapshots that were not fitted", &RowStatistics::pp_held_out_rmse},
+    {"pw_held_out_rmse", "pw_rmse on snapshots that were not fitted", &RowStatistics::pw_held_out_rmse},
+    {"closure_mean", "mean over particles of the sum of F minus 1", &RowStatistics::closure_mean, true},
+    {"closure_rms", "rms of the same", &RowStatistics::closure_rms},
 };
 
 RowStatistics read_statistics(TomlTable table) {
@@ -40,17 +40,19 @@ RowStatistics read_statistics(TomlTable table) {
   if (!table.present()) return statistics;
   for (const auto& field : statistics_fields)
     statistics.*field.value =
-        table.number(field.key, {.unit = "1", .min = field.signed_value ? -1e300 : 0}, 0);
+        table.number({field.key, field.meaning}, {.unit = "1", .min = field.signed_value ? -1e300 : 0}, 0);
   const NumberRule error{.unit = "1", .min = 0};
   if (table.has("pp_standard_error"))
-    statistics.pp_standard_error = table.number_list("pp_standard_error", error, 1);
+    statistics.pp_standard_error =
+        table.number_list({"pp_standard_error", "of each coefficient in pp"}, error, 1);
   if (table.has("pw_standard_error"))
-    statistics.pw_standard_error = table.number_list("pw_standard_error", error, 1);
+    statistics.pw_standard_error =
+        table.number_list({"pw_standard_error", "of each coefficient in pw"}, error, 1);
   return statistics;
 }
 
 std::vector<double> read_coefficients(TomlTable& row, const char* key, std::size_t count, const char* form) {
-  auto values = row.number_list(key, {}, 1);
+  auto values = row.number_list({key, "coefficients, as many as the form takes"}, {}, 1);
   if (row.has(key) && values.size() != count)
     row.problem(key, fmt::format("{} coefficients (form \"{}\" takes {}) give exactly {}", values.size(),
                                  form, count, count));
@@ -59,15 +61,16 @@ std::vector<double> read_coefficients(TomlTable& row, const char* key, std::size
 
 CorrelationRow read_row(TomlTable& table, CorrelationForm form) {
   CorrelationRow row;
-  row.solid_fraction =
-      table.number("solid_fraction", {.unit = "1",
-                                      .min = 0,
-                                      .max = 0.7405,
-                                      .min_exclusive = true,
-                                      .why = "volume of solid per volume; 0.7405 is the densest"});
+  row.solid_fraction = table.number({"solid_fraction", "volume of particles per volume"},
+                                    {.unit = "1",
+                                     .min = 0,
+                                     .max = 0.7405,
+                                     .min_exclusive = true,
+                                     .why = "volume of solid per volume; 0.7405 is the densest"});
   row.pp = read_coefficients(table, "pp", pp_coefficient_count(form), to_string(form));
   row.pw = read_coefficients(table, "pw", pw_coefficient_count(form), to_string(form));
-  row.statistics = read_statistics(table.table("statistics"));
+  row.statistics =
+      read_statistics(table.table({"statistics", "How well the row fits, as vfgen fit wrote it"}));
   if (form == CorrelationForm::transmittance && row.pp.size() == 2 && row.pw.size() == 3) {
     if (row.pp[0] < 0 || row.pp[1] <= 0)
       table.problem("pp", "a or b is negative (F would exceed the unobstructed value) both must be positive");
@@ -78,7 +81,7 @@ CorrelationRow read_row(TomlTable& table, CorrelationForm form) {
 }
 
 void read_rows(TomlTable& root, CorrelationTable& table) {
-  auto rows = root.tables("row");
+  auto rows = root.tables({"row", "Coefficients at one solid fraction; rows ascend"});
   if (rows.empty()) root.problem("row", "no [[row]] (a table needs at least one solid fraction) add [[row]]");
   for (auto& entry : rows) {
     table.rows.push_back(read_row(entry, table.form));
@@ -91,41 +94,48 @@ void read_rows(TomlTable& root, CorrelationTable& table) {
   }
 }
 
-CorrelationTable read_table(TomlDocument document, const std::string& name) {
+}  // namespace
+
+CorrelationTable read_correlation(TomlDocument& document, const std::string& name) {
   auto root = document.root();
   CorrelationTable table;
   table.name = name;
-  root.choice("format", {"granrad.correlation"});
-  root.integer("version", 1, file_version);
-  table.title = root.string("title", "");
-  table.form = root.choice("form", {"cubic", "transmittance"}) == "transmittance"
+  root.choice({"format", "what this file is"}, {"granrad.correlation"});
+  root.integer({"version", "of the format"}, 1, file_version);
+  table.title = root.string({"title", "what the table describes"}, "");
+  table.form = root.choice({"form", "of the correlation; its equations are in docs/theory.md"},
+                           {"cubic", "transmittance"}) == "transmittance"
                    ? CorrelationForm::transmittance
                    : CorrelationForm::cubic;
-  root.choice("pp_distance", {"centre_distance_over_d"});
-  table.pw_distance =
-      root.choice("pw_distance", {"centre_to_plane_over_d", "h_plus_r_over_d"}) == "h_plus_r_over_d"
-          ? WallDistance::h_plus_r_over_d
-          : WallDistance::centre_to_plane_over_d;
+  root.choice({"pp_distance", "what d* of two particles is; contact at 1"}, {"centre_distance_over_d"});
+  table.pw_distance = root.choice({"pw_distance", "what d* of particle and wall is; contact at 0.5, or at 1"},
+                                  {"centre_to_plane_over_d", "h_plus_r_over_d"}) == "h_plus_r_over_d"
+                          ? WallDistance::h_plus_r_over_d
+                          : WallDistance::centre_to_plane_over_d;
   if (table.form == CorrelationForm::transmittance && table.pw_distance == WallDistance::h_plus_r_over_d)
     root.problem("pw_distance",
                  "\"h_plus_r_over_d\" (form \"transmittance\" is defined for h/d, contact at 0.5) use "
                  "\"centre_to_plane_over_d\"");
-  table.pp_cutoff = root.number("pp_cutoff", {.unit = "1",
-                                              .min = 1,
-                                              .max = largest_pp_cutoff,
-                                              .min_exclusive = true,
-                                              .why = "d* of the farthest pair, contact is 1"});
-  table.pw_cutoff = root.number(
-      "pw_cutoff", {.unit = "1", .min = 1, .min_exclusive = true, .why = "d* of the farthest wall"});
-  table.clip =
-      root.number("clip", {.unit = "1", .min = 0, .max = 1e-3, .why = "a view factor is never negative"}, 0);
+  table.pp_cutoff = root.number({"pp_cutoff", "d* of the farthest pair of particles"},
+                                {.unit = "1",
+                                 .min = 1,
+                                 .max = largest_pp_cutoff,
+                                 .min_exclusive = true,
+                                 .why = "d* of the farthest pair, contact is 1"});
+  table.pw_cutoff =
+      root.number({"pw_cutoff", "d* of the farthest wall"},
+                  {.unit = "1", .min = 1, .min_exclusive = true, .why = "d* of the farthest wall"});
+  table.clip = root.number({"clip", "view factors below are taken as zero"},
+                           {.unit = "1", .min = 0, .max = 1e-3, .why = "a view factor is never negative"}, 0);
   read_rows(root, table);
-  auto provenance = root.table("provenance");
+  auto provenance = root.table({"provenance", "Where the numbers come from"});
   for (const char* key : provenance_keys)
-    if (provenance.has(key)) table.provenance.emplace_back(key, provenance.string(key));
+    if (provenance.has(key)) table.provenance.emplace_back(key, provenance.string({key, "in words"}));
   document.finish();
   return table;
 }
+
+namespace {
 
 std::string quoted(const std::string& text) {
   std::string out = "\"";
@@ -169,11 +179,13 @@ std::string statistics_text(const RowStatistics& statistics) {
 }  // namespace
 
 CorrelationTable read_correlation(const std::filesystem::path& file) {
-  return read_table(TomlDocument::from_file(file), file.string());
+  auto document = TomlDocument::from_file(file);
+  return read_correlation(document, file.string());
 }
 
 CorrelationTable parse_correlation(const std::string& text, const std::string& name) {
-  return read_table(TomlDocument::from_string(text, name), name);
+  auto document = TomlDocument::from_string(text, name);
+  return read_correlation(document, name);
 }
 
 std::string correlation_text(const CorrelationTable& table) {

@@ -33,51 +33,62 @@ std::string name_of(double solid_fraction, int number, const std::string& depend
 }
 
 void read_snapshot_settings(TomlTable table, GenerateSettings& s) {
-  s.solid_fractions = table.number_list("solid_fractions",
+  s.solid_fractions = table.number_list({"solid_fractions", "one row of the table each"},
                                         {.unit = "1",
                                          .min = 0,
                                          .max = 0.6,
                                          .min_exclusive = true,
                                          .why = "0.6 is the densest disordered packing"},
                                         1);
-  s.size_m = table.vec3("size_m", {.unit = "m", .min = 0, .min_exclusive = true});
-  s.diameter_m = table.number("diameter_m", {.unit = "m", .min = 0, .min_exclusive = true});
+  s.size_m = table.vec3({"size_m", "lengths of the box that is filled"},
+                        {.unit = "m", .min = 0, .min_exclusive = true});
+  s.diameter_m =
+      table.number({"diameter_m", "diameter of the spheres"}, {.unit = "m", .min = 0, .min_exclusive = true});
   for (int axis = 0; axis < 3; ++axis)
     if (s.size_m[axis] > 0 && s.diameter_m > 0.5 * s.size_m[axis])
       table.problem("diameter_m",
                     fmt::format("{} (the box is {} wide in {}: at least two diameters) enlarge size_m",
                                 s.diameter_m, s.size_m[axis], "xyz"[axis]));
-  s.count = static_cast<int>(table.integer("count", 1, 1000, 1));
-  s.sweeps = static_cast<int>(table.integer("sweeps", 0, 1000000, 100));
-  s.seed = static_cast<std::uint64_t>(table.integer("seed", 0, std::numeric_limits<std::int64_t>::max(), 1));
+  s.count = static_cast<int>(table.integer({"count", "beds per solid fraction"}, 1, 1000, 1));
+  s.sweeps = static_cast<int>(
+      table.integer({"sweeps", "moves tried per sphere before a bed counts as random"}, 0, 1000000, 100));
+  s.seed = static_cast<std::uint64_t>(
+      table.integer({"seed", "of the beds and the rays"}, 0, std::numeric_limits<std::int64_t>::max(), 1));
 }
 
 void read_trace_settings(TomlTable table, GenerateSettings& s) {
-  s.trace.method = table.choice("method", {"lines", "embree"}, "lines") == "lines" ? TraceMethod::lines
-                                                                                   : TraceMethod::embree;
-  s.trace.rays =
-      table.number("rays", {.unit = "1", .min = 100, .max = 1e9, .why = "rays per particle"}, 10000);
+  s.trace.method =
+      table.choice({"method", "how view factors are traced"}, {"lines", "embree"}, "lines") == "lines"
+          ? TraceMethod::lines
+          : TraceMethod::embree;
+  s.trace.rays = table.number({"rays", "rays per particle"},
+                              {.unit = "1", .min = 100, .max = 1e9, .why = "rays per particle"}, 10000);
   s.trace.seed = s.seed;
 }
 
 void read_fit_settings(TomlTable table, GenerateSettings& s) {
-  const auto form = table.choice("form", {"both", "cubic", "transmittance"}, "both");
+  const auto form =
+      table.choice({"form", "which correlation is fitted"}, {"both", "cubic", "transmittance"}, "both");
   if (form != "transmittance") s.forms.push_back(CorrelationForm::cubic);
   if (form != "cubic") s.forms.push_back(CorrelationForm::transmittance);
-  s.cutoff =
-      table.number("cutoff", {.unit = "1", .min = 1.5, .max = largest_pp_cutoff, .why = "d* of a pair"}, 10);
+  s.cutoff = table.number({"cutoff", "d* of the farthest pair that counts"},
+                          {.unit = "1", .min = 1.5, .max = largest_pp_cutoff, .why = "d* of a pair"}, 10);
 }
 
 }  // namespace
 
 GenerateSettings read_generate_settings(const std::filesystem::path& config) {
   auto document = TomlDocument::from_file(config);
+  return read_generate_settings(document);
+}
+
+GenerateSettings read_generate_settings(TomlDocument& document) {
   auto root = document.root();
   GenerateSettings settings;
-  settings.title = root.string("title", "");
-  read_snapshot_settings(root.table("snapshots"), settings);
-  read_trace_settings(root.table("trace"), settings);
-  read_fit_settings(root.table("fit"), settings);
+  settings.title = root.string({"title", "what the table will be called"}, "");
+  read_snapshot_settings(root.table({"snapshots", "The random beds that are traced"}), settings);
+  read_trace_settings(root.table({"trace", "How they are traced"}), settings);
+  read_fit_settings(root.table({"fit", "What is fitted"}), settings);
   document.finish();
   return settings;
 }

@@ -10,6 +10,8 @@
 
 namespace granrad {
 
+class TomlDocument;
+
 /// What `vfgen generate` reads (TOML; plain numbers are SI, strings may carry units; unknown keys are
 /// errors):
 ///
@@ -48,6 +50,7 @@ struct GenerateSettings {
 
 /// Throws IoError, or InputError with every problem located.
 GenerateSettings read_generate_settings(const std::filesystem::path& config);
+GenerateSettings read_generate_settings(TomlDocument& document);
 
 /// One snapshot as its settings make it: equal spheres in a closed box, seed fixed by the number of the
 /// snapshot.

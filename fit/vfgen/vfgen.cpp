@@ -6,7 +6,9 @@
 #include <optional>
 
 #include "dem/base/error.h"
+#include "dem/base/keys/key_reference.h"
 #include "dem/base/program.h"
+#include "fit/vfgen/generate.h"
 #include "fit/vfgen/vfgen_commands.h"
 
 namespace {
@@ -141,7 +143,7 @@ void add_generate(CLI::App& app, Body& body) {
   const auto command = std::make_shared<GenerateCommand>();
   auto& sub = *app.add_subcommand(
       "generate", "Snapshots, view factors, tables and reports for a list of solid fractions");
-  sub.add_option("CONFIG", command->config, "TOML, see fit/vfgen/generate.h")->required();
+  sub.add_option("CONFIG", command->config, "TOML; its keys: vfgen keys")->required();
   sub.add_option("-o,--output", command->folder, "folder; what is there from the same settings is kept")
       ->required();
   sub.add_option("--threads", command->threads, "0: all; results do not depend on it")
@@ -159,6 +161,25 @@ void add_check(CLI::App& app, Body& body) {
       [&body, table] { body = [table](Verbosity verbosity) { return run_check(*table, verbosity); }; });
 }
 
+void add_keys(CLI::App& app, Body& body) {
+  const auto md = std::make_shared<bool>(false), toml = std::make_shared<bool>(false),
+             schema = std::make_shared<bool>(false);
+  auto& sub = *app.add_subcommand("keys", "Every key of a CONFIG of generate: unit, range, default, meaning");
+  auto* markdown = sub.add_flag("--md", *md, "a page in Markdown (the default)");
+  auto* as_toml = sub.add_flag("--toml", *toml, "a commented file to start from")->excludes(markdown);
+  sub.add_flag("--schema", *schema, "a JSON schema for editors")->excludes(markdown)->excludes(as_toml);
+  sub.callback([&body, md, toml, schema] {
+    body = [toml, schema](Verbosity) {
+      const auto tables = key_catalogue([](TomlDocument& document) { read_generate_settings(document); });
+      const char* title = "Settings of vfgen generate";
+      fmt::print("{}", *schema ? reference_schema(tables, title)
+                       : *toml ? reference_toml(tables, title)
+                               : reference_markdown(tables));
+      return exit_ok;
+    };
+  });
+}
+
 int run(int argc, char** argv) {
   CLI::App app("View factors of particle beds by ray tracing, and correlations fitted to them.", "vfgen");
   app.set_version_flag("--version", fmt::format("vfgen {} ({})", program_version(), program_git_sha()));
@@ -172,6 +193,7 @@ int run(int argc, char** argv) {
   add_fit(app, body);
   add_generate(app, body);
   add_check(app, body);
+  add_keys(app, body);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

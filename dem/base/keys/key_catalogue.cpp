@@ -55,9 +55,16 @@ std::vector<Run> explore(const std::function<void(TomlDocument&)>& read) {
 }
 
 void merge(KnownKey& known, const KeyUse& use) {
+  if (known.use.kind == KeyKind::text && use.kind == KeyKind::choice) {  // text: looked at before it was read
+    known.use.kind = use.kind;
+    known.use.choices = use.choices;
+    known.use.fallback = use.fallback;
+  }
   known.always_required = known.always_required && use.required;
   known.ever_required = known.ever_required || use.required;
   if (known.use.fallback && use.fallback && *known.use.fallback != *use.fallback) known.default_varies = true;
+  known.use.rule.min = std::min(known.use.rule.min, use.rule.min);
+  known.use.rule.max = std::max(known.use.rule.max, use.rule.max);
   if (!known.use.fallback) known.use.fallback = use.fallback;
   if (known.use.meaning.empty()) known.use.meaning = use.meaning;
   if (known.use.otherwise.empty()) known.use.otherwise = use.otherwise;
@@ -117,9 +124,9 @@ std::vector<KnownTable> key_catalogue(const std::function<void(TomlDocument&)>& 
       }
       KnownTable& table = table_named(use.table);
       const auto same = [&](const KnownKey& key) { return key.use.name == use.name; };
-      const auto at = std::find_if(table.keys.begin(), table.keys.end(), same);
-      if (at == table.keys.end()) table.keys.push_back({use, true, false, false, {}});
-      merge(at == table.keys.end() ? table.keys.back() : *at, use);
+      auto at = std::find_if(table.keys.begin(), table.keys.end(), same);
+      if (at == table.keys.end()) at = table.keys.insert(at, {use, true, false, false, {}});
+      merge(*at, use);
     }
   std::erase_if(tables, [](const KnownTable& table) { return table.keys.empty() && table.meaning.empty(); });
   for (auto& table : tables) find_conditions(runs, table);
