@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# ./do demo | test | test-long | bench [trace|dem|heat|case] [--quick]
+# ./do demo | test | test-long | gates | tidy | format | docs | package | bench [trace|dem|heat|case] [--quick]
 # Each command takes a bare Debian 12 all the way: missing packages, configuration, build, run.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
@@ -14,6 +14,12 @@ packages=(build-essential cmake ninja-build git python3
 # The engine on LIGGGHTS: optional in a build, part of the tests.
 liggghts_engine=(libliggghts-dev libopenmpi-dev)
 
+# Python package and its tests; pages in a browser; documents; films.
+python=(python3-dev pybind11-dev python3-numpy python3-scipy python3-h5py python3-pytest python3-pandas python3-jsonschema)
+pages=(chromium)
+documents=(mkdocs help2man)
+packaging=(dpkg-dev file)
+
 say() { printf '\n== %s\n' "$*"; }
 
 usage() {
@@ -22,6 +28,11 @@ usage() {
   demo        a plug flow of hot-walled alumina, about 1 s of flow: table, frames and a page
   test        the test suite (minutes)
   test-long   the physics that takes long
+  gates       layout of the sources, headers alone, unit tests under the address and undefined-behaviour sanitizers
+  tidy        clang-tidy on all sources, or on those named
+  format      lays the sources out
+  docs        references made from the programs, and the pages as a site in build/site
+  package     a .deb of programs, library, Python, data and documents in build/package
   bench       speed against error, side by side with LIGGGHTS, LAMMPS, plain Embree and dense LU;
               case: the whole moving bed of the paper beside LIGGGHTS' flow alone
 EOF
@@ -59,7 +70,37 @@ set_up() {
   configure
 }
 
+sources() { git -C "$root" ls-files '*.h' '*.cpp' '*.inc'; }
+
 case ${1:-} in
+  gates)
+    packages+=(clang-format-14)
+    set_up
+    say "layout"
+    (cd "$root" && sources | xargs clang-format-14 --dry-run -Werror) ||
+      { echo "some sources are laid out differently; ./do format mends them" >&2; exit 1; }
+    say "headers alone"
+    cmake --build "$build" --target header_check
+    say "unit tests under sanitizers"
+    cmake --preset Sanitize -S "$root" >"$root/build/sanitize.log" 2>&1 || { cat "$root/build/sanitize.log" >&2; exit 1; }
+    unit=$(cd "$root/tests" && sed -nE 's/^granrad_test\(unit\/([a-z0-9_]+).*/test_unit_\1/p' ./*.cmake)
+    # shellcheck disable=SC2086
+    cmake --build "$root/build/Sanitize" --target $unit
+    (cd "$root" && OMP_WAIT_POLICY=passive ctest --preset Sanitize -j "$(nproc)")
+    ;;
+  tidy)
+    packages+=(clang-tidy-14)
+    set_up
+    build all >/dev/null  # sources that the build makes
+    shift
+    files=("$@")
+    ((${#files[@]})) || mapfile -t files < <(sources | grep '\.cpp$' | grep -v '^tests/bench')
+    printf '%s\n' "${files[@]}" | xargs -P "$(nproc)" -n 4 clang-tidy-14 -p "$build" --quiet
+    ;;
+  format)
+    install_missing clang-format-14
+    sources | xargs clang-format-14 -i
+    ;;
   test)
     packages+=("${liggghts_engine[@]}")
     set_up

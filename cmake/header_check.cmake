@@ -1,0 +1,18 @@
+# header_check: every header compiles alone. One source a header, that includes it twice; not part of `all`.
+set(granrad_headers)
+set(granrad_lone_headers)
+foreach(room dem raytrace fit coupling)
+  file(GLOB_RECURSE found CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/${room}/*.h)
+  list(APPEND granrad_headers ${found})
+endforeach()
+foreach(header ${granrad_headers})
+  string(REPLACE "/" "_" source ${header})
+  set(source ${PROJECT_BINARY_DIR}/lone_headers/${source}.cpp)
+  file(CONFIGURE OUTPUT ${source} CONTENT "#include \"${header}\"\n#include \"${header}\"\n")
+  list(APPEND granrad_lone_headers ${source})
+endforeach()
+# Headers that are the inside of one source, or need the instruction set of their source, are not for others to include.
+list(FILTER granrad_lone_headers EXCLUDE REGEX "dem_native_simd_|_bodies\\.h|dem_native_pack|dem_liggghts_session")
+add_library(header_check OBJECT EXCLUDE_FROM_ALL ${granrad_lone_headers})
+target_link_libraries(header_check PRIVATE granrad_flags fmt::fmt Eigen3::Eigen hdf5::hdf5 embree)
+target_compile_options(header_check PRIVATE -O0 -g0)

@@ -1,0 +1,68 @@
+# What `cmake --install` puts where, the exported package, and the .deb.
+install(TARGETS granrun vfgen RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(DIRECTORY data/ DESTINATION ${CMAKE_INSTALL_DATADIR}/granrad
+  PATTERN "reference" EXCLUDE)
+install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
+install(FILES packaging/completion.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME granrun)
+install(FILES packaging/completion.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME vfgen)
+install(FILES packaging/paraview_open_case.py DESTINATION ${CMAKE_INSTALL_DATADIR}/granrad)
+
+# Manual pages are made of --help.
+find_program(HELP2MAN help2man)
+if(HELP2MAN)
+  foreach(program granrun vfgen)
+    set(page ${PROJECT_BINARY_DIR}/man/${program}.1)
+    if(program STREQUAL granrun)
+      set(does "granular flows heated by conduction and radiation")
+    else()
+      set(does "view factors of particle beds, and correlations fitted to them")
+    endif()
+    add_custom_command(OUTPUT ${page} DEPENDS ${program}
+      COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_BINARY_DIR}/man
+      COMMAND ${HELP2MAN} --no-info --help-option=--help-all --name=${does} --output=${page} $<TARGET_FILE:${program}>
+      VERBATIM)
+    list(APPEND granrad_man ${page})
+  endforeach()
+  add_custom_target(man ALL DEPENDS ${granrad_man})
+  install(FILES ${granrad_man} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+endif()
+
+if(GRANRAD_SHARED)
+  include(CMakePackageConfigHelpers)
+  install(TARGETS granrad EXPORT granrad LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  foreach(room dem raytrace fit coupling)
+    install(DIRECTORY ${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/granrad FILES_MATCHING PATTERN "*.h")
+  endforeach()
+  set(package ${CMAKE_INSTALL_LIBDIR}/cmake/granrad)
+  install(EXPORT granrad NAMESPACE granrad:: FILE granradTargets.cmake DESTINATION ${package})
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/granradConfig.cmake
+    CONTENT "include(\${CMAKE_CURRENT_LIST_DIR}/granradTargets.cmake)\n" @ONLY)
+  write_basic_package_version_file(${PROJECT_BINARY_DIR}/granradConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+  install(FILES ${PROJECT_BINARY_DIR}/granradConfig.cmake ${PROJECT_BINARY_DIR}/granradConfigVersion.cmake
+    DESTINATION ${package})
+  configure_file(packaging/granrad.pc.in ${PROJECT_BINARY_DIR}/granrad.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/granrad.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+  install(DIRECTORY packaging/example DESTINATION ${CMAKE_INSTALL_DOCDIR})
+endif()
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME granrad)
+set(CPACK_PACKAGE_VENDOR granrad)
+set(CPACK_PACKAGE_CONTACT "granrad <granrad@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "radiation and conduction in granular flows, with error bars")
+set(CPACK_PACKAGE_DESCRIPTION
+  "Moving beds of particles heated from hot walls by radiation, gas and contact:\n view factors by ray tracing, correlations fitted to them, coupled discrete elements.")
+set(CPACK_PACKAGE_FILE_NAME granrad_${PROJECT_VERSION}_amd64)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/lib)
+if(GRANRAD_PYTHON)
+  set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3, python3-numpy, python3-scipy, python3-h5py")
+  set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-pandas")
+endif()
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "chromium, ffmpeg, paraview")
+include(CPack)
