@@ -12,11 +12,11 @@ void bind_correlations(py::module_& module) {
           }),
           py::arg("table"), py::arg("solid_fraction"),
           "table: TOML file; solid_fraction: volume of particles per volume. Raises InputError outside its rows.")
-      .def("pp", py::vectorize([](const Correlation& c, double d_star) { return c.pp(d_star); }),
+      .def("pp", py::vectorize([](Correlation& c, double d_star) { return c.pp(d_star); }),
            py::arg("d_star"),
            "F between two particles, centres d_star diameters apart (contact at 1). Array in, array out.")
       .def(
-          "pw", py::vectorize([](const Correlation& c, double h_over_d, double unobstructed) {
+          "pw", py::vectorize([](Correlation& c, double h_over_d, double unobstructed) {
             return c.pw(h_over_d, unobstructed);
           }),
           py::arg("h_over_d"), py::arg("unobstructed"),
