@@ -14,6 +14,9 @@ packages=(build-essential cmake ninja-build git python3
 # The engine on LIGGGHTS: optional in a build, part of the tests.
 liggghts_engine=(libliggghts-dev libopenmpi-dev)
 
+# What tests look into HDF5 files with.
+test_tools=(hdf5-tools)
+
 # Python package and its tests; pages in a browser; documents; films.
 python=(python3-dev pybind11-dev python3-numpy python3-scipy python3-h5py python3-pytest python3-pandas python3-jsonschema)
 pages=(chromium)
@@ -102,7 +105,7 @@ case ${1:-} in
     sources | xargs clang-format-14 -i
     ;;
   test)
-    packages+=("${liggghts_engine[@]}")
+    packages+=("${liggghts_engine[@]}" "${test_tools[@]}")
     set_up
     build all
     say "testing"
@@ -110,7 +113,7 @@ case ${1:-} in
     ctest --test-dir "$build" -LE long -j "$(nproc)" --output-on-failure --no-tests=error
     ;;
   test-long)
-    packages+=("${liggghts_engine[@]}")
+    packages+=("${liggghts_engine[@]}" "${test_tools[@]}")
     set_up
     build all
     say "testing (long)"

@@ -11,8 +11,6 @@
 
 namespace granrad {
 
-namespace {}  // namespace
-
 TracingGeometry::TracingGeometry(const Enclosure& enclosure)
     : spheres(static_cast<std::int32_t>(enclosure.sphere_count())),
       open(static_cast<std::int32_t>(enclosure.open_surface())),
@@ -61,8 +59,8 @@ void TracingGeometry::choose_units(const Enclosure& enclosure) {
   const double extent = norm(all.size());
   unit_m = spheres > 0 ? radius_sum / spheres : extent / 100;
   pad = 1e-6 * extent / unit_m;
-  this->low = to_units(low) - Vec3{pad, pad, pad};
-  this->high = to_units(high) + Vec3{pad, pad, pad};
+  low = to_units(all.min) - Vec3{pad, pad, pad};
+  high = to_units(all.max) + Vec3{pad, pad, pad};
   box_min = to_units(enclosure.box.min);
   box_max = to_units(enclosure.box.max);
 }
