@@ -196,6 +196,15 @@ void Hdf5Writer::attribute(const std::string& object, const std::string& name, c
   impl_->attribute(object, name, type, space, text.c_str());
 }
 
+void Hdf5Writer::variable_text_attribute(const std::string& object, const std::string& name,
+                                         const std::string& text) {
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
+  H5Tset_size(type, H5T_VARIABLE);
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  const char* first = text.c_str();
+  impl_->attribute(object, name, type, space, &first);
+}
+
 void Hdf5Writer::fixed_text_attribute(const std::string& object, const std::string& name,
                                       const std::string& text) {
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);

@@ -33,6 +33,8 @@ class Hdf5Writer {
 
   /// Text of fixed length in UTF-8: bytes in h5py.
   void attribute(const std::string& object, const std::string& name, const std::string& text);
+  /// Text of variable length: a str in h5py. For what people read; its bytes lie in a heap without checksum.
+  void variable_text_attribute(const std::string& object, const std::string& name, const std::string& text);
   /// Text of fixed length in ASCII, the only kind VTK reads.
   void fixed_text_attribute(const std::string& object, const std::string& name, const std::string& text);
   void attribute(const std::string& object, const std::string& name, const std::vector<std::int64_t>& values);

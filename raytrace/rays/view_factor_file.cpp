@@ -126,19 +126,19 @@ void write_snapshot(Hdf5Writer& out, const ViewFactorFile& content) {
 }
 
 void write_origin(Hdf5Writer& out, const ViewFactorFile& content) {
-  out.attribute("/", "format", std::string(format_name));
+  out.variable_text_attribute("/", "format", std::string(format_name));
   out.attribute("/", "version", std::vector<std::int64_t>{view_factor_version});
-  out.attribute("/", "method", content.method);
+  out.variable_text_attribute("/", "method", content.method);
   out.attribute("/", "seed", std::vector<std::int64_t>{static_cast<std::int64_t>(content.seed)});
-  out.attribute("/", "closure",
-                std::string(content.closure == Closure::reciprocal ? "reciprocal" : "row_sum"));
+  out.variable_text_attribute("/", "closure",
+                              std::string(content.closure == Closure::reciprocal ? "reciprocal" : "row_sum"));
   out.attribute("/", "closure_correction_max", content.closure_correction_max);
   out.attribute("/", "emissivity", content.emissivity.empty() ? 1.0 : content.emissivity.front());
-  out.attribute("/", "git_sha", std::string(program_git_sha()));
+  out.variable_text_attribute("/", "git_sha", std::string(program_git_sha()));
   out.attribute("/", "closure_defect", content.check.closure_defect);
   out.attribute("/", "reciprocity_chi2", content.check.reciprocity_chi2);
   out.attribute("/", "mean_chord_ratio", content.check.mean_chord_ratio);
-  out.attribute("/", "failed", content.check.failed);
+  out.variable_text_attribute("/", "failed", content.check.failed);
 }
 
 void write_spent(Hdf5Writer& out, const ViewFactorFile& content) {
