@@ -9,6 +9,7 @@
 #include "coupling/granrun/results.h"
 #include "coupling/granrun/run_record.h"
 #include "coupling/simulation/case_folder.h"
+#include "dem/base/constants.h"
 #include "dem/base/error.h"
 #include "dem/io/snapshot.h"
 #include "dem/page/html_report.h"
@@ -33,30 +34,44 @@ Series series(const std::string& label, const History& history, const std::strin
   return result;
 }
 
-void add_chart(HtmlReport& page, const std::string& title, const std::string& y_label,
+/// The same with one standard error of each value, where another column has it.
+Series series(const std::string& label, const History& history, const std::string& column,
+              const std::string& error_column) {
+  Series result = series(label, history, column);
+  const auto errors = history.find(error_column), values = history.find(column);
+  if (errors == history.end() || values == history.end()) return result;
+  for (std::size_t k = 0; k < values->second.size(); ++k)
+    if (std::isfinite(values->second[k])) result.error.push_back(errors->second[k]);
+  return result;
+}
+
+void add_chart(HtmlReport& page, const std::string& title, const std::string& y_label, const Results& results,
                std::vector<Series> all) {
   std::erase_if(all, [](const Series& s) {
     return s.y.empty() || std::all_of(s.y.begin(), s.y.end(), [](double y) { return y == 0; });
   });
-  if (!all.empty()) page.chart({title, "time, s", y_label, all, false, false});
+  if (!all.empty())
+    page.chart({title, "time, s", y_label, all, false, false, std::pair{results.from_s, results.to_s}});
 }
 
-void add_histories(HtmlReport& page, const History& h) {
+void add_histories(HtmlReport& page, const History& h, const Results& r) {
   page.heading("Histories");
-  add_chart(page, "Mean temperature", "T, K",
-            {series("in the region", h, "mean_temperature_K"), series("leaving", h, "outlet_temperature_K")});
-  add_chart(page, "Heat from the walls", "Q, W",
-            {series("solid contacts", h, "Q_ss_W"), series("gas lenses", h, "Q_sfs_W"),
-             series("radiation", h, "Q_rad_W")});
-  add_chart(page, "Wall-to-particle coefficients", "h, W/m²K",
-            {series("all", h, "h_wp_W_m2K"), series("solid contacts", h, "h_ss_W_m2K"),
+  page.paragraph("Shaded: the time that means are taken over. Bands: one standard error of the ray tracing.");
+  add_chart(page, "Wall-to-particle coefficients", "h, W/m²K", r,
+            {series("all", h, "h_wp_W_m2K", "h_wp_error_W_m2K"), series("solid contacts", h, "h_ss_W_m2K"),
              series("gas lenses", h, "h_sfs_W_m2K"), series("radiation", h, "h_rad_W_m2K")});
-  add_chart(page, "Mass flow", "kg/s",
+  add_chart(page, "Mean temperature", "T, K", r,
+            {series("in the region", h, "mean_temperature_K"), series("leaving", h, "outlet_temperature_K")});
+  add_chart(page, "Heat from the walls", "Q, W", r,
+            {series("solid contacts", h, "Q_ss_W"), series("gas lenses", h, "Q_sfs_W"),
+             series("radiation", h, "Q_rad_W", "Q_rad_error_W")});
+  add_chart(page, "Mass flow", "kg/s", r,
             {series("in", h, "mass_flow_in_kg_s"), series("out", h, "mass_flow_out_kg_s")});
-  add_chart(page, "Solid fraction in the region", "φ", {series("φ", h, "solid_fraction")});
-  add_chart(page, "Contacts per particle", "coordination number",
+  add_chart(page, "Solid fraction in the region", "φ", r, {series("φ", h, "solid_fraction")});
+  add_chart(page, "Contacts per particle", "coordination number", r,
             {series("contacts", h, "coordination_number")});
-  add_chart(page, "Energy ledger", "|stored − received| / received", {series("defect", h, "energy_defect")});
+  add_chart(page, "Energy ledger", "|stored − received| / received", r,
+            {series("defect", h, "energy_defect")});
 }
 
 void add_profile(HtmlReport& page, const std::vector<Bed>& beds, const char* name, int axis) {
@@ -83,6 +98,36 @@ void add_profile(HtmlReport& page, const std::vector<Bed>& beds, const char* nam
   chart("Downward velocity", "v, m/s", p.velocity_m_s);
 }
 
+constexpr std::size_t most_outlines = 4000;  ///< of triangles, more would hide the bed
+
+std::vector<std::vector<Vec3>> outlines(const Bed& bed) {
+  std::vector<std::vector<Vec3>> all;
+  for (const Wall& wall : bed.walls) {
+    if (wall.triangles.empty()) all.push_back(wall.vertices);
+    if (all.size() + wall.triangles.size() > most_outlines) continue;
+    for (const auto& t : wall.triangles)
+      all.push_back({wall.vertices[t[0]], wall.vertices[t[1]], wall.vertices[t[2]]});
+  }
+  return all;
+}
+
+BedPicture picture(const Bed& bed) {
+  BedPicture shown{.position_m = bed.position_m,
+                   .radius_m = bed.radius_m,
+                   .columns = {{"T, K", bed.temperature_K}},
+                   .walls = outlines(bed),
+                   .low = bed.box.min,
+                   .high = bed.box.max};
+  const auto received = [](double q) { return q != 0; };
+  if (std::any_of(bed.radiative_heat_W.begin(), bed.radiative_heat_W.end(), received)) {
+    std::vector<double> flux(bed.size());
+    for (std::size_t i = 0; i < bed.size(); ++i)
+      flux[i] = bed.radiative_heat_W[i] / (4 * pi * bed.radius_m[i] * bed.radius_m[i]);
+    shown.columns.emplace_back("radiative flux received, W/m²", std::move(flux));
+  }
+  return shown;
+}
+
 void add_profiles(HtmlReport& page, const CaseFolder& folder) {
   const auto frames = folder.frames();
   const std::size_t count = std::min((frames.size() + 1) / 2, frames_in_profiles);
@@ -92,12 +137,49 @@ void add_profiles(HtmlReport& page, const CaseFolder& folder) {
     if (bed.size() > 0) beds.push_back(std::move(bed));
   }
   if (beds.empty()) return;
+  page.heading("The bed at the last frame");
+  page.bed(fmt::format("{} particles at {:g} s", beds.back().size(), beds.back().time_s),
+           picture(beds.back()));
   page.heading(fmt::format("Profiles, mean of the last {} frames ({:g} s to {:g} s)", beds.size(),
                            beds.front().time_s, beds.back().time_s));
   add_profile(page, beds, "z", 2);
   add_profile(page, beds, "y", 1);
   add_profile(page, beds, "x", 0);
   page.histogram("Particle temperatures, last frame", "T, K", {{"particles", beds.back().temperature_K}});
+}
+
+/// "107.9" and "0.5": two digits of the error, and the value to the same place.
+Tile tile(const std::string& label, const std::string& unit, const Average& average, double factor = 1) {
+  const double value = factor * average.mean, error = std::abs(factor) * average.standard_error;
+  if (!std::isfinite(error) || error <= 0) return {label, fmt::format("{:.4g}", value), "", unit};
+  const int digits = std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12);
+  return {label, fmt::format("{:.{}f}", value, digits), fmt::format("{:.{}f}", error, digits), unit};
+}
+
+void add_head(HtmlReport& page, const Results& r, const RunRecord& record) {
+  page.verdict(
+      fmt::format(
+          "{} Means from {:g} s to {:g} s. Energy stored and received differ by {:.1e} of the heat at most.",
+          record.finished ? "Finished." : "Not finished: the state of its last frame and row.", r.from_s,
+          r.to_s, r.largest_energy_defect),
+      record.finished && r.largest_energy_defect < 1e-6);
+  std::vector<Tile> tiles;
+  const auto add = [&](const char* column, const std::string& label, const std::string& unit,
+                       double factor = 1) {
+    const auto found = r.column.find(column);
+    if (found != r.column.end() && std::isfinite(found->second.mean) && found->second.mean != 0)
+      tiles.push_back(tile(label, unit, found->second, factor));
+  };
+  add("h_wp_W_m2K", "wall-to-particle coefficient", "W/m²K");
+  add("h_rad_W_m2K", "of it by radiation", "W/m²K");
+  add("h_sfs_W_m2K", "of it through the gas", "W/m²K");
+  add("h_ss_W_m2K", "of it through contacts", "W/m²K");
+  add("outlet_temperature_K", "temperature leaving", "K");
+  add("mean_temperature_K", "mean temperature", "K");
+  add("mass_flow_out_kg_s", "mass flow out", "g/s", 1000);
+  add("solid_fraction", "solid fraction", "");
+  add("Nu_d", "Nusselt number", "");
+  page.tiles(tiles);
 }
 
 void add_results(HtmlReport& page, const Results& results) {
@@ -120,14 +202,15 @@ int report_case(const std::filesystem::path& where, const RunOptions& options) {
   const History history = read_history(folder.history());
   const RunRecord record = read_run_record(folder);
   HtmlReport page(record.scene_name);
-  page.paragraph(fmt::format(
-      "granrad {} ({}). Radiation: {}. {}", record.program_version, record.git_sha, record.radiation,
-      record.finished ? "Finished." : "Not finished: the state of its last frame and row."));
-  if (!history.at("time_s").empty()) {
-    add_results(page, summarise(history));
-    add_histories(page, history);
-  }
+  const bool has_rows = !history.at("time_s").empty();
+  const Results results = has_rows ? summarise(history) : Results{};
+  if (has_rows) add_head(page, results, record);
+  page.paragraph(fmt::format("Radiation: {}.", record.radiation));
+  if (has_rows) add_histories(page, history, results);
   add_profiles(page, folder);
+  if (has_rows) add_results(page, results);
+  page.provenance({{"computed by", fmt::format("granrad {} ({})", record.program_version, record.git_sha)}});
+  page.provenance(record.provenance);
   page.write(folder.root() / "report.html");
   if (!options.quiet()) fmt::print("{}\n", (folder.root() / "report.html").string());
   return exit_ok;

@@ -109,6 +109,33 @@ void write_run_record(const CaseFolder& folder, const Case& c, const Simulation&
   write_text_file(folder.run_json(), json.dump(1) + "\n");
 }
 
+namespace {
+
+std::vector<std::pair<std::string, std::string>> provenance_of(const nlohmann::json& json) {
+  std::vector<std::pair<std::string, std::string>> lines;
+  const auto say = [&](const char* what, const char* table, const char* key, const char* unit = "") {
+    const auto part = json.find(table);
+    if (part == json.end() || !part->is_object() || !part->contains(key)) return;
+    const auto& value = part->at(key);
+    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    lines.emplace_back(what, fmt::format("{}{}", text, unit));
+  };
+  say("command", "process", "command_line");
+  say("host", "process", "host");
+  say("threads", "process", "threads");
+  say("started", "process", "first_started");
+  say("written", "process", "written");
+  say("wall time", "process", "wall_seconds", " s");
+  say("compiler", "program", "compiler");
+  say("libraries", "program", "libraries");
+  say("seed of the feed", "seeds", "feed");
+  say("seed of the radiation", "seeds", "radiation");
+  say("hash of the scene", "scene", "hash_fnv1a64");
+  return lines;
+}
+
+}  // namespace
+
 RunRecord read_run_record(const CaseFolder& folder) {
   const auto json = parsed(folder.run_json());
   try {
@@ -119,6 +146,7 @@ RunRecord read_run_record(const CaseFolder& folder) {
     record.radiation = json.at("radiation");
     record.finished = json.at("finished");
     record.end_time_s = json.at("steps").at("end_time_s");
+    record.provenance = provenance_of(json);
     return record;
   } catch (const nlohmann::json::exception&) {
     throw IoError(advised(fmt::format("{}: damaged (not a record of a run)", folder.run_json().string()),

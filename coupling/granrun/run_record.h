@@ -1,5 +1,7 @@
 #pragma once
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "coupling/granrun/results.h"
 #include "coupling/granrun/run_options.h"
@@ -13,6 +15,8 @@ struct RunRecord {
   std::string scene_name = "case", program_version, git_sha, radiation;
   bool finished = false;
   double end_time_s = 0;  ///< where the run ends
+  std::vector<std::pair<std::string, std::string>>
+      provenance;  ///< what, text: command, host, dates, versions, seeds
 };
 
 /// run.json: where a result came from. Versions of the program and its libraries, git commit, host, threads,

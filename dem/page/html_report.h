@@ -1,38 +1,69 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "dem/base/vec3.h"
 
 namespace granrad {
 
-/// One series of a chart. `error` (one sigma) draws bars where given.
+/// One series of a chart. `error` (one sigma) draws bars at markers and a band along a line.
 struct Series {
   std::string label;
-  std::vector<double> x, y, error;
+  std::vector<double> x, y, error{};
   bool points = false;  ///< markers instead of a line
+  bool steps = false;   ///< each value holds until the next x
+  bool filled = false;  ///< the area below is shaded
 };
 
 struct Chart {
   std::string title, x_label, y_label;  ///< labels carry units
-  std::vector<Series> series;
+  std::vector<Series> series{};
   bool log_x = false, log_y = false;
+  std::optional<std::pair<double, double>> window{};  ///< shaded from, to: what means are taken over
 };
 
-/// A self-contained HTML page (inline SVG and CSS, no scripts from elsewhere, light and dark).
+/// A number people look for first.
+struct Tile {
+  std::string label, value, error{},
+      unit{};  ///< error: one standard error with the digits of the value, or ""
+};
+
+/// A bed to turn and slice.
+struct BedPicture {
+  std::vector<Vec3> position_m;
+  std::vector<double> radius_m;
+  std::vector<std::pair<std::string, std::vector<double>>> columns;  ///< to colour by; labels carry units
+  std::vector<std::vector<Vec3>> walls;                              ///< outlines
+  Vec3 low, high;                                                    ///< corners of what is shown
+};
+
+/// A self-contained HTML page, light, dark and printed: what draws is inside it (dem/page/assets), nothing is loaded.
 class HtmlReport {
  public:
   explicit HtmlReport(std::string title);
   void heading(const std::string& text);
   void paragraph(const std::string& text);
+  /// The first sentence: what it came to, and whether that can be trusted.
+  void verdict(const std::string& text, bool good);
+  void tiles(const std::vector<Tile>& tiles);
   void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
+  /// Charts that follow each other stand side by side where there is room.
   void chart(const Chart& chart);
   /// Charts as histograms of equal bins over the joint range, normalised to unit area.
   void histogram(const std::string& title, const std::string& x_label,
                  const std::vector<std::pair<std::string, std::vector<double>>>& samples, int bins = 40);
+  void bed(const std::string& title, const BedPicture& picture);
+  /// Last lines: where the numbers come from ("command", "granrun run ..."; "threads", "2").
+  void provenance(const std::vector<std::pair<std::string, std::string>>& lines);
   void write(const std::filesystem::path& file) const;  ///< temporary name, then rename; throws IoError
 
  private:
-  std::string title_, body_;
+  void end_charts();
+  std::string title_, body_, provenance_;
+  bool in_charts_ = false, has_figures_ = false;
 };
 
 }  // namespace granrad
