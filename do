@@ -105,7 +105,7 @@ case ${1:-} in
     sources | xargs clang-format-14 -i
     ;;
   test)
-    packages+=("${liggghts_engine[@]}" "${test_tools[@]}")
+    packages+=("${liggghts_engine[@]}" "${test_tools[@]}" "${pages[@]}")
     set_up
     build all
     say "testing"

@@ -128,6 +128,13 @@ BedPicture picture(const Bed& bed) {
   return shown;
 }
 
+void add_bed(HtmlReport& page, const CaseFolder& folder) {
+  const auto frames = folder.frames();
+  if (frames.empty()) return;
+  const Bed bed = read_frame(frames.back().file).bed;
+  if (bed.size() > 0) page.bed(fmt::format("{} particles at {:g} s", bed.size(), bed.time_s), picture(bed));
+}
+
 void add_profiles(HtmlReport& page, const CaseFolder& folder) {
   const auto frames = folder.frames();
   const std::size_t count = std::min((frames.size() + 1) / 2, frames_in_profiles);
@@ -137,9 +144,6 @@ void add_profiles(HtmlReport& page, const CaseFolder& folder) {
     if (bed.size() > 0) beds.push_back(std::move(bed));
   }
   if (beds.empty()) return;
-  page.heading("The bed at the last frame");
-  page.bed(fmt::format("{} particles at {:g} s", beds.back().size(), beds.back().time_s),
-           picture(beds.back()));
   page.heading(fmt::format("Profiles, mean of the last {} frames ({:g} s to {:g} s)", beds.size(),
                            beds.front().time_s, beds.back().time_s));
   add_profile(page, beds, "z", 2);
@@ -206,6 +210,7 @@ int report_case(const std::filesystem::path& where, const RunOptions& options) {
   const Results results = has_rows ? summarise(history) : Results{};
   if (has_rows) add_head(page, results, record);
   page.paragraph(fmt::format("Radiation: {}.", record.radiation));
+  add_bed(page, folder);
   if (has_rows) add_histories(page, history, results);
   add_profiles(page, folder);
   if (has_rows) add_results(page, results);

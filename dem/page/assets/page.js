@@ -138,7 +138,7 @@
         values: (u, splits) => splits.map(v => log && Math.abs(Math.log10(v) % 1) > 1e-6 && u.axes[0]._splits?.length > 8 ? "" : number_text(v)),
       });
       const y_axis = axis(chart.y_label, logs.y);
-      y_axis.size = (u, values) => values ? Math.max(44, 14 + 7 * Math.max(...values.map(v => (v || "").length))) : 50;
+      y_axis.size = (u, values) => values ? Math.max(50, 22 + 7.2 * Math.max(...values.map(v => (v || "").length))) : 50;
       plot = new uPlot({
         width, height: Math.round(Math.min(340, Math.max(220, width * 0.55))),
         scales: {x: {time: false, distr: logs.x ? 3 : 1}, y: {distr: logs.y ? 3 : 1}},

@@ -1,0 +1,73 @@
+"""Pages of the programs, opened in headless Chromium at three widths: no script fails, every figure is drawn, nothing is
+cut off at the side and no texts overlap. Usage: pages_in_browser.py BIN SOURCE
+Catches, tried once each: a missing bracket in page.js; a canvas of no height; a table wider than the page.
+"""
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+BIN, SOURCE = map(pathlib.Path, sys.argv[1:3])
+BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+
+CHECK = """<script>
+addEventListener('load', () => setTimeout(() => {
+  const faults = [], root = document.documentElement;
+  if (!root.dataset.drawn) faults.push('a script failed');
+  for (const figure of document.querySelectorAll('figure')) {
+    const canvas = figure.querySelector('canvas');
+    if (!canvas || canvas.height < 100 || canvas.width < 100) { faults.push('not drawn: ' + figure.textContent.slice(0, 40)); continue; }
+    const pixels = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+    if (!pixels.some(v => v)) faults.push('empty: ' + figure.querySelector('figcaption').textContent);
+    if (figure.granrad && !/<(polyline|circle)/.test(figure.granrad.svg())) faults.push('SVG without data');
+  }
+  if (root.scrollWidth > root.clientWidth + 1) faults.push('wider than the window by ' + (root.scrollWidth - root.clientWidth));
+  const texts = [...document.querySelectorAll('h1, h2, p, .tile b, .tile span, figcaption, td, th, .tools > *')]
+    .filter(e => e.textContent.trim()).map(e => [e, e.getBoundingClientRect()]).filter(([, r]) => r.width && r.height);
+  for (let i = 0; i < texts.length; ++i)
+    for (let j = i + 1; j < Math.min(texts.length, i + 60); ++j) {
+      const [a, r] = texts[i], [b, s] = texts[j];
+      if (a.contains(b) || b.contains(a)) continue;
+      const wide = Math.min(r.right, s.right) - Math.max(r.left, s.left), high = Math.min(r.bottom, s.bottom) - Math.max(r.top, s.top);
+      if (wide > 3 && high > 3) faults.push('overlap: ' + a.textContent.slice(0, 20) + ' | ' + b.textContent.slice(0, 20));
+    }
+  root.dataset.faults = JSON.stringify(faults.slice(0, 5));
+}, 300));
+</script></body>"""
+
+
+def run(*command):
+    subprocess.run([str(c) for c in command], check=True, capture_output=True)
+
+
+def faults_of(page, width, folder):
+    checked = folder / f"checked_{width}.html"
+    checked.write_text(page.read_text().replace("</body>", CHECK))
+    dom = subprocess.run([BROWSER, "--headless", "--no-sandbox", "--disable-gpu", f"--window-size={width},1200",
+                          "--virtual-time-budget=8000", f"--user-data-dir={folder}/profile", "--dump-dom", checked.as_uri()],
+                         capture_output=True, text=True, timeout=120).stdout
+    found = re.search(r'data-faults="([^"]*)"', dom)
+    return found.group(1) if found else "the browser did not answer"
+
+
+def main():
+    if not BROWSER:
+        print("no Chromium: skipped")
+        return 77
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        run(BIN / "granrun", "run", SOURCE / "data/scenes/static_phi007.toml", "-o", folder / "case", "--set",
+            "scene.end_time_s=0.5", "--set", "output.every_s=0.02", "--set", "radiation.source=paths", "-q")
+        run(BIN / "granrun", "report", folder / "case", "-q")
+        bad = 0
+        for page in [folder / "case" / "report.html"]:
+            for width in (700, 1000, 1400):
+                faults = faults_of(page, width, folder)
+                print(f"{page.name} at {width}: {faults if faults != '[]' else 'sound'}")
+                bad += faults != "[]"
+    return bad != 0
+
+
+sys.exit(main())
