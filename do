@@ -36,6 +36,8 @@ usage() {
   format      lays the sources out
   docs        references made from the programs, and the pages as a site in build/site
   package     a .deb of programs, library, Python, data and documents in build/package
+  fuzz-files [SECONDS]
+              damaged files of each kind that is read, SECONDS each (default 60): 0 findings is the aim
   bench       speed against error, side by side with LIGGGHTS, LAMMPS, plain Embree and dense LU;
               case: the whole moving bed of the paper beside LIGGGHTS' flow alone
 EOF
@@ -157,6 +159,24 @@ EOF
       "$build/tests/bench/${name}_bench" "${options[@]}" "$build/bench"
     done
     say "tables and figures: $build/bench"
+    ;;
+  fuzz-files)
+    seconds=${2:-60}
+    packages+=(clang libclang-rt-14-dev libomp-dev)
+    set_up
+    fuzz=$root/build/fuzz
+    kinds=(scene table dump csv stl vtk xyz frame view_factors)
+    say "building the fuzzers in build/fuzz"
+    cmake -S "$root" -B "$fuzz" -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_C_COMPILER=clang \
+      -DCMAKE_CXX_COMPILER=clang++ -DGRANRAD_FUZZ=ON >"$fuzz.log" || { cat "$fuzz.log"; exit 1; }
+    cmake --build "$fuzz" --target "${kinds[@]/#/fuzz_}"
+    for kind in "${kinds[@]}"; do
+      say "fuzzing $kind for $seconds s"
+      mkdir -p "$fuzz/found/$kind"
+      "$fuzz/tests/fuzz_$kind" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 -close_fd_mask=3 \
+        -artifact_prefix="$fuzz/found/$kind-" "$fuzz/found/$kind" "$root/tests/fuzz/corpus/$kind"
+    done
+    say "no findings"
     ;;
   -h | --help | help) usage ;;
   *) usage >&2; exit 2 ;;

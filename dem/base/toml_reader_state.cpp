@@ -111,7 +111,9 @@ double TomlTable::Node::checked_number(const toml::node& node, const std::string
       shown += fmt::format(" = {:.10g} {}", *converted, rule.unit);
     value = converted.value_or(0);
   } else if (node.is_number()) {
-    value = *node.value<double>();
+    // value<double>() gives nothing for an integer that no double holds exactly
+    const auto* whole = node.as_integer();
+    value = whole ? static_cast<double>(whole->get()) : node.as_floating_point()->get();
   } else {
     why_not = "must be " + expected_number(rule);
   }
