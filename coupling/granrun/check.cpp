@@ -47,11 +47,15 @@ void judge_flow(const Case& c, Verdict& verdict) {
   const Scene& scene = c.flow;
   const bool moves = scene.engine != EngineKind::none;
   const char* engine = scene.engine == EngineKind::liggghts ? "LIGGGHTS" : "native DEM engine";
-  verdict.say(moves,
-              fmt::format("flow: {}, Hertz-Mindlin contacts with history{}", engine,
-                          scene.precision == Precision::mixed ? ", their law in single precision" : ""),
-              "flow: dem.engine = \"none\", the bed is frozen");
-  if (!moves) return;
+  verdict.say(
+      moves,
+      scene.engine == EngineKind::replay
+          ? fmt::format("flow: the recording of {} files, {}", scene.replay.files.size(),
+                        scene.replay.interpolated ? "interpolated" : "the nearest snapshot at each time")
+          : fmt::format("flow: {}, Hertz-Mindlin contacts with history{}", engine,
+                        scene.precision == Precision::mixed ? ", their law in single precision" : ""),
+      "flow: dem.engine = \"none\", the bed is frozen");
+  if (!moves || scene.engine == EngineKind::replay) return;
   verdict.say(norm(scene.gravity_m_s2) > 0, fmt::format("gravity {:g} m/s2", norm(scene.gravity_m_s2)),
               "gravity: scene.gravity_m_s2 is 0");
   verdict.say(scene.feed.kind != FeedSettings::Kind::none, "feed: particles enter and leave",

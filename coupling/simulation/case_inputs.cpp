@@ -50,12 +50,15 @@ std::vector<InputFile> input_files(const TomlDocument& document) {
 std::string portable_text(const TomlDocument& document, const std::vector<InputFile>& inputs) {
   std::map<std::string, std::string> texts;
   for (const auto& input : inputs) texts[input.key] = input.stored_as;
+  for (const auto& [key, pattern] : document.patterns())
+    texts[key] = pattern.string();  // recordings stay in place
   return document.effective_text(texts);
 }
 
 std::string identity_text(const TomlDocument& document, const std::vector<InputFile>& inputs) {
   std::map<std::string, std::string> texts;
   for (const auto& input : inputs) texts[input.key] = fmt::format("{:016x}", input.hash);
+  for (const auto& [key, pattern] : document.patterns()) texts[key] = pattern.string();
   auto identity = TomlDocument::from_string(document.effective_text(texts), "scene");
   for (const char* key : free_to_change) identity.override_value(fmt::format("{}=1", key));
   return identity.effective_text();

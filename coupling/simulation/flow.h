@@ -7,7 +7,7 @@
 
 namespace granrad {
 
-/// What moves the bed in a run: feed and engine, or nothing (a frozen bed).
+/// What moves the bed in a run: feed and engine, a recording, or nothing (a frozen bed).
 class Flow {
  public:
   explicit Flow(const Scene& scene, int threads = 0);
@@ -22,14 +22,17 @@ class Flow {
   EngineThreads threads() const { return engine_ ? engine_->threads() : EngineThreads{}; }
   bool moves() const { return scene_.engine != EngineKind::none; }
 
-  FeedTotals totals() const { return feed_ ? feed_->totals() : FeedTotals{}; }
-  StateBlock save() const { return feed_ ? feed_->save() : StateBlock{}; }
+  FeedTotals totals() const { return feed_ ? feed_->totals() : recorded_; }
+  StateBlock save() const;
   void load(const StateBlock& state);
 
  private:
+  void follow_recording(Bed& bed, double time_s);
+
   const Scene& scene_;
   int threads_;
   std::unique_ptr<Feed> feed_;
+  FeedTotals recorded_;             ///< what came and went in a recording
   std::unique_ptr<Engine> engine_;  ///< made at the first advance, when the bed is known
   NearPairs pairs_;
   bool pairs_known_ = false;

@@ -60,8 +60,9 @@ ConductionSettings read_conduction(TomlTable table) {
 
 int read_conduction_interval(TomlTable table, const Scene& scene) {
   if (!table.has("every_steps")) return 0;
-  if (scene.engine == EngineKind::none)
-    table.problem("every_steps", "has no meaning in a frozen bed (there are no DEM steps); leave it out");
+  if (!computes_forces(scene.engine))
+    table.problem("every_steps",
+                  "has no meaning in a frozen or recorded bed (there are no DEM steps); leave it out");
   return static_cast<int>(table.integer(
       {"every_steps", "flow steps per update of conduction", "from its stability"}, 1, 1000000));
 }

@@ -71,13 +71,15 @@ StepLimits step_limits(const Case& c, const Bed& bed) {
   limits.rayleigh_time_s = limits.hertz_time_s = limits.dem_s = infinity;
   limits.radiation_s = limits.motion_s = infinity;
   if (!std::isfinite(radius)) return limits;
-  if (scene.engine != EngineKind::none) {
+  if (computes_forces(scene.engine)) {
     for (const Material& material : scene.materials) {
       limits.rayleigh_time_s = std::min(limits.rayleigh_time_s, rayleigh_time_s(material, radius));
       limits.hertz_time_s =
           std::min(limits.hertz_time_s, hertz_time_s(material, radius, limits.impact_speed_m_s));
     }
     limits.dem_s = std::min(rayleigh_share * limits.rayleigh_time_s, hertz_share * limits.hertz_time_s);
+  }
+  if (scene.engine != EngineKind::none) {
     const double speed = largest_speed_m_s(scene, bed);
     if (speed > 0) limits.motion_s = 2 * radius / speed;
   }

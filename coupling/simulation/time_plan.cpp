@@ -86,7 +86,11 @@ void refuse_beyond(std::vector<std::string>& problems, const char* key, double v
 double choose_step(const Case& c, const StepLimits& limits, double conduction_limit_s,
                    std::vector<std::string>& problems) {
   const double base = Intervals(c).shortest_s();
-  if (c.flow.engine == EngineKind::none) return base / std::ceil(base / std::min(base, conduction_limit_s));
+  if (!computes_forces(c.flow.engine)) {
+    // contacts of a recording are not known ahead: room for four times those of its first snapshot
+    const double room = c.flow.engine == EngineKind::replay ? 0.25 : 1;
+    return base / std::ceil(base / std::min(base, room * conduction_limit_s));
+  }
   if (!(c.flow.step_s > 0)) return dividing_step(base, std::min(limits.dem_s, base));
   refuse_beyond(problems, "dem.step_s", c.flow.step_s, limits.dem_s,
                 fmt::format("0.3 Rayleigh times = {:.3g} s, 0.1 Hertz times = {:.3g} s at {:.3g} m/s",
@@ -97,7 +101,7 @@ double choose_step(const Case& c, const StepLimits& limits, double conduction_li
 
 std::int64_t choose_steps_per_tick(const Case& c, std::int64_t divisor, double step_s,
                                    double conduction_limit_s, std::vector<std::string>& problems) {
-  if (c.flow.engine == EngineKind::none) return 1;
+  if (!computes_forces(c.flow.engine)) return 1;
   const std::int64_t wanted = c.heat.conduction_every_steps;
   if (wanted == 0) {
     const double most = std::min<double>(usual_steps_per_tick, std::floor(conduction_limit_s / step_s));
@@ -127,7 +131,7 @@ TimePlan make_time_plan(const Case& c, const StepLimits& limits, double conducti
   if (c.heat.radiation.kind != RadiationKind::none)
     refuse_beyond(problems, "radiation.every_s", c.heat.radiation.every_s, limits.radiation_s,
                   "0.1 of the radiative time constant of the smallest particle at the hottest temperature");
-  const bool frozen = c.flow.engine == EngineKind::none;
+  const bool frozen = !computes_forces(c.flow.engine);  // steps are those of the heat alone
   TimePlan plan;
   plan.asked = asked_of_plan(c);
   plan.step_s = choose_step(c, limits, conduction_limit_s, problems);

@@ -24,7 +24,7 @@ std::string file_bytes(const std::filesystem::path& file) {
   if (fs::is_directory(file, failure)) throw IoError(fmt::format("{}: is a folder", file.string()));
   const std::unique_ptr<gzFile_s, CloseGzip> in(gzopen(file.c_str(), "rb"));
   if (!in) throw IoError(fmt::format("{}: cannot be read", file.string()));
-  constexpr unsigned block = 1 << 20;
+  constexpr unsigned block = 1 << 16;
   gzbuffer(in.get(), block);
   std::string bytes;
   for (int got = 1; got > 0;) {

@@ -139,6 +139,10 @@ const std::map<std::string, fs::path>& TomlDocument::files() const {
   return state_->files;
 }
 
+const std::map<std::string, fs::path>& TomlDocument::patterns() const {
+  return state_->patterns;
+}
+
 /// Follows "walls.y_min" or "polygon[2].role" from a table; null where it ends early.
 toml::node* TomlDocument::State::find(std::string_view path, toml::node* node) {
   while (node && !path.empty()) {

@@ -49,6 +49,8 @@ class TomlDocument {
   std::string effective_text(const std::map<std::string, std::string>& texts) const;
   /// Every file named so far, by the path of its key, as it was found on disk.
   const std::map<std::string, std::filesystem::path>& files() const;
+  /// Patterns of names of files, by path of the key, as TomlTable::pattern gave them.
+  const std::map<std::string, std::filesystem::path>& patterns() const;
   /// The same, with every default that was used as a comment: `# restitution = 0.8`.
   std::string text_with_defaults() const;
   /// Every reading of a key so far, in order.
@@ -82,6 +84,8 @@ class TomlTable {
                      std::optional<std::string> fallback = {});
   /// An existing file: beside the document, else among the installed data (data_folder.h); made absolute.
   std::filesystem::path file(const Key& key, bool required);
+  /// Names of files, with * and ?, made absolute from the folder of the document; empty when absent.
+  std::filesystem::path pattern(const Key& key);
   Vec3 vec3(const Key& key, const NumberRule& each, std::optional<Vec3> fallback = {});
   std::vector<Vec3> vec3_list(const Key& key, const NumberRule& each, std::size_t min_count);
   std::vector<double> number_list(const Key& key, const NumberRule& each, std::size_t min_count);

@@ -31,6 +31,7 @@ struct TomlDocument::State {
   std::map<std::string, std::set<std::string>> known, read;      ///< keys asked for, by table path
   std::map<std::string, std::vector<std::string>> absent_needs;  ///< keys required of tables that are absent
   std::map<std::string, std::filesystem::path> files;            ///< named and found, by path of the key
+  std::map<std::string, std::filesystem::path> patterns;         ///< of names of files, by path of the key
   std::set<std::string> troubled;                                ///< paths that have a problem of their own
   std::vector<KeyUse> uses;                                      ///< every reading, in order
   std::set<std::string> asked_for;         ///< exploring: has() came first, so it is optional

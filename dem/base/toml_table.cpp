@@ -178,6 +178,13 @@ fs::path TomlTable::file(const Key& key, bool required) {
   return {};
 }
 
+fs::path TomlTable::pattern(const Key& key) {
+  const std::string text = string(key, "");
+  if (text.empty()) return {};
+  return node_->state->patterns[node_->path_of(key.name)] =
+             (fs::absolute(node_->state->folder) / text).lexically_normal();
+}
+
 Vec3 TomlTable::vec3(const Key& key, const NumberRule& each, std::optional<Vec3> fallback) {
   KeyUse& use = node_->use(key, KeyKind::vector, each, !fallback);
   if (fallback) use.fallback = fmt::format("[{}, {}, {}]", fallback->x, fallback->y, fallback->z);

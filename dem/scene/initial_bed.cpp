@@ -136,23 +136,31 @@ void refuse_deep_overlaps(const Scene& scene, const Bed& bed) {
 }
 
 void take_particles(const Scene& scene, Bed& bed) {
-  Snapshot snapshot = read_snapshot(scene.particle_file, 0.5 * scene.particle_diameter_m);
+  SnapshotChoice which;
+  if (scene.engine == EngineKind::replay) which.kind = SnapshotChoice::Kind::first;
+  Snapshot snapshot = read_snapshot(scene.particle_file, 0.5 * scene.particle_diameter_m, which);
   Bed& from = snapshot.bed;
   refuse_two_sizes(scene, snapshot);
-  if (snapshot.has_types)
-    translate_types(from, scene);
-  else
-    translate_materials(from, scene.materials, scene.particle_file.string());
+  take_into_scene(snapshot, scene);
   if (!same_geometry(from.walls, scene.walls))
     std::erase_if(from.contacts, [](const ContactMemory& c) { return c.second < 0; });
-  if (!snapshot.has_temperature)
-    std::fill(from.temperature_K.begin(), from.temperature_K.end(), scene.particle_temperature_K);
+  if (scene.engine == EngineKind::replay) from.contacts.clear();
   bed = std::move(from);
   bed.time_s = 0;
   bed.step = 0;
 }
 
 }  // namespace
+
+void take_into_scene(Snapshot& snapshot, const Scene& scene) {
+  Bed& bed = snapshot.bed;
+  if (snapshot.has_types)
+    translate_types(bed, scene);
+  else
+    translate_materials(bed, scene.materials, snapshot.origin);
+  if (!snapshot.has_temperature)
+    std::fill(bed.temperature_K.begin(), bed.temperature_K.end(), scene.particle_temperature_K);
+}
 
 Bed initial_bed(const Scene& scene) {
   Bed bed;

@@ -58,8 +58,14 @@ void read_particles(TomlTable table, Scene& scene) {
        "names of the materials of the types 1, 2, ... of a dump; default: [material], then [[materials]] in their order"});
   scene.particle_temperature_K = table.number(
       {"temperature_K", "temperature of particles that enter or that the file gives none"}, temperature, 300);
+  if (scene.engine == EngineKind::replay) {
+    if (table.has("file"))
+      table.problem("file",
+                    "has no meaning with dem.engine = \"replay\" (the recording begins with particles)");
+    if (!scene.replay.files.empty()) scene.particle_file = scene.replay.files.front();
+  }
   const bool from_feed = scene.feed.kind != FeedSettings::Kind::none;
-  if (scene.particle_file.empty() && !table.has("file"))
+  if (scene.particle_file.empty() && !table.has("file") && scene.engine != EngineKind::replay)
     scene.particle_diameter_m = table.number(
         {"diameter_m", "diameter of the particles; with a file that has radii, only what the feed brings",
          "mean of the file"},
@@ -72,14 +78,16 @@ void read_particles(TomlTable table, Scene& scene) {
     scene.particle_diameter_m = *given;
   else if (!scene.particle_file.empty())
     scene.particle_diameter_m = mean_diameter_of_file(table, scene.particle_file);
-  if (scene.particle_file.empty() && !from_feed && !table.has("file"))
+  if (scene.particle_file.empty() && !from_feed && !table.has("file") && scene.engine != EngineKind::replay)
     table.problem("", "there are no particles: give [particles] file or a [feed]");
 }
 
 void read_dem(TomlTable table, Scene& scene) {
   const std::string engine =
-      table.choice({"engine", "native, LIGGGHTS, or a frozen bed"}, {"native", "liggghts", "none"}, "native");
+      table.choice({"engine", "native, LIGGGHTS, a frozen bed, or a flow that was recorded"},
+                   {"native", "liggghts", "none", "replay"}, "native");
   scene.engine = engine == "none"       ? EngineKind::none
+                 : engine == "replay"   ? EngineKind::replay
                  : engine == "liggghts" ? EngineKind::liggghts
                                         : EngineKind::native;
   const std::string precision =
@@ -89,6 +97,7 @@ void read_dem(TomlTable table, Scene& scene) {
   scene.step_s =
       table.number({"step_s", "time step of the flow", "a fraction of the contact time; see granrun check"},
                    {.unit = "s", .min = 0, .min_exclusive = true}, 0.0);
+  read_replay(table, scene);
 }
 
 bool radiation_is_on(TomlTable root) {
@@ -108,10 +117,10 @@ Scene read_scene(TomlDocument& document) {
   scene.gravity_m_s2 = general.vec3({"gravity_m_s2", "acceleration of gravity"}, {.unit = "m/s2"}, Vec3{});
   scene.materials = read_materials(root);
   scene.feed.kind = read_feed_kind(root.table({"feed", "How particles enter and leave"}));
+  read_dem(root.table({"dem", "How particles move"}), scene);
   read_particles(root.table({"particles", "Where particles come from, and how large they are"}), scene);
   read_geometry(root, scene, radiation_is_on(root));
   read_feed(root.table({"feed", "How particles enter and leave"}), scene);
-  read_dem(root.table({"dem", "How particles move"}), scene);
   if (scene.feed.kind == FeedSettings::Kind::plug && scene.gravity_m_s2 != Vec3{})
     general.problem("gravity_m_s2",
                     "must be zero with [feed] kind = \"plug\": particles would fall out of the plug");

@@ -28,7 +28,18 @@ struct FeedSettings {
   std::uint64_t seed = 1;
 };
 
-enum class EngineKind { native, liggghts, none };
+enum class EngineKind { native, liggghts, none, replay };
+
+/// Whether the flow is computed from forces: its step has limits.
+inline bool computes_forces(EngineKind engine) {
+  return engine == EngineKind::native || engine == EngineKind::liggghts;
+}
+
+/// A recorded flow (see dem/engine_replay.h).
+struct ReplaySettings {
+  std::vector<std::filesystem::path> files;  ///< in time
+  bool interpolated = false;
+};
 
 /// Of the contact law between particles: double, or single with all else in double (dem/engine_native.h).
 enum class Precision { full, mixed };
@@ -50,6 +61,7 @@ struct Scene {
   std::filesystem::path particle_file;      ///< empty: particles come from the feed
   std::vector<std::string> particle_types;  ///< materials of types 1, 2, ... of a dump; empty: in their order
   FeedSettings feed;
+  ReplaySettings replay;
   EngineKind engine = EngineKind::native;
   Precision precision = Precision::full;
   double step_s = 0;  ///< DEM step; 0: the largest allowed by the step limits
@@ -61,6 +73,11 @@ struct Scene {
 /// around polygons and meshes; the region (the box); the diameter from a particle file; wall emissivity from
 /// the material.
 Scene read_scene(TomlDocument& document);
+
+struct Snapshot;
+/// Materials and types of a snapshot become those of the scene, temperatures it has none of particles.temperature_K.
+/// Throws InputError when the scene has no such material.
+void take_into_scene(Snapshot& snapshot, const Scene& scene);
 
 /// The Bed at time 0 without a feed: walls and materials of the scene, particles from its file if any. A
 /// frame gives velocities, temperatures and contacts too (those with walls only if its walls are the

@@ -12,6 +12,9 @@ void read_geometry(TomlTable root, Scene& scene, bool roles_required);
 /// kind of [feed], which other parts depend on.
 FeedSettings::Kind read_feed_kind(TomlTable feed);
 
+/// files and between of [dem]. Preconditions: engine and feed.kind are read.
+void read_replay(TomlTable& dem, Scene& scene);
+
 /// The rest of [feed]. Preconditions: materials, particles and box are read.
 void read_feed(TomlTable feed, Scene& scene);
 

@@ -71,7 +71,7 @@ const std::map<std::string, std::vector<std::string>> arrows = [] {
             correlation,
             paths,
             engine,
-            {"dem/feed/feed.h", "dem/engine_native.h", "dem/engine_liggghts.h", "coupling/simulation/"}});
+            {"dem/feed/feed.h", "dem/engine_native.h", "dem/engine_liggghts.h", "dem/engine_replay.h", "coupling/simulation/"}});
   return std::map<std::string, Folders>{
       {"dem/", engine},
       {"dem/base/", base},
@@ -82,6 +82,7 @@ const std::map<std::string, std::vector<std::string>> arrows = [] {
       {"dem/packing/", packing},
       {"dem/feed/", join({scene, packing, {"dem/feed/"}})},
       {"dem/native/", join({engine, {"dem/engine_native.h", "dem/native/"}})},
+      {"dem/replay/", join({engine, {"dem/engine_replay.h", "dem/replay/"}})},
       {"dem/liggghts/", join({engine, {"dem/engine_liggghts.h", "dem/liggghts/"}})},
       {"raytrace/", enclosure},
       {"raytrace/embree/", embree},
