@@ -23,6 +23,8 @@ pages=(chromium)
 documents=(mkdocs help2man)
 packaging=(dpkg-dev file)
 
+settings=()  # of the configuration
+
 say() { printf '\n== %s\n' "$*"; }
 
 usage() {
@@ -60,7 +62,7 @@ configure() {
   say "configuring in build/release"
   local werror=OFF
   [[ ${CI:-} == true ]] && werror=ON
-  cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DGRANRAD_WERROR=$werror >"$root/build/configure.log" 2>&1 ||
+  cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DGRANRAD_WERROR=$werror "${settings[@]}" >"$root/build/configure.log" 2>&1 ||
     { cat "$root/build/configure.log" >&2; exit 1; }
 }
 
@@ -102,12 +104,30 @@ case ${1:-} in
     ((${#files[@]})) || mapfile -t files < <(sources | grep '\.cpp$' | grep -v '^tests/bench')
     printf '%s\n' "${files[@]}" | xargs -P "$(nproc)" -n 4 clang-tidy-14 -p "$build" --quiet
     ;;
+  package)
+    packages+=("${python[@]}" "${documents[@]}" "${packaging[@]}")
+    set_up
+    say "package"
+    cmake -S "$root" --preset Package >"$root/build/package.log" 2>&1 || { cat "$root/build/package.log" >&2; exit 1; }
+    cmake --build "$root/build/Package"
+    (cd "$root/build/Package" && cpack -G DEB)
+    ls -l "$root"/build/Package/*.deb
+    ;;
+  docs)
+    packages+=("${documents[@]}")
+    set_up
+    build granrun vfgen
+    "$root/docs/make_references.sh" "$build/bin"
+    (cd "$root" && mkdocs build --quiet --config-file docs/mkdocs.yml --site-dir "$root/build/site")
+    say "site: $root/build/site/index.html"
+    ;;
   format)
     install_missing clang-format-14
     sources | xargs clang-format-14 -i
     ;;
   test)
-    packages+=("${liggghts_engine[@]}" "${test_tools[@]}" "${pages[@]}")
+    packages+=("${liggghts_engine[@]}" "${test_tools[@]}" "${pages[@]}" "${python[@]}")
+    settings+=(-DGRANRAD_PYTHON=ON)
     set_up
     build all
     say "testing"

@@ -15,7 +15,7 @@ set(granrad_static_rooms)
 foreach(room ${granrad_rooms})
   if(TARGET ${room})
     get_target_property(kind ${room} TYPE)
-    if(kind STREQUAL STATIC_LIBRARY)
+    if(kind STREQUAL STATIC_LIBRARY OR kind STREQUAL OBJECT_LIBRARY)  # kernels of one instruction set
       list(APPEND granrad_static_rooms ${room})
     endif()
   endif()

@@ -1,3 +1,5 @@
+#include <pybind11/stl/filesystem.h>
+
 #include "fit/correlation/correlation.h"
 #include "python/bindings.h"
 
@@ -7,13 +9,12 @@ using namespace granrad;
 void bind_correlations(py::module_& module) {
   py::class_<Correlation>(module, "Correlation", "View factors of a correlation table at one solid fraction.")
       .def(
-          py::init([](const std::string& table, double solid_fraction) {
-            return Correlation(read_correlation(std::filesystem::path(table)), solid_fraction);
+          py::init([](const std::filesystem::path& table, double solid_fraction) {
+            return Correlation(read_correlation(table), solid_fraction);
           }),
           py::arg("table"), py::arg("solid_fraction"),
           "table: TOML file; solid_fraction: volume of particles per volume. Raises InputError outside its rows.")
-      .def("pp", py::vectorize([](Correlation& c, double d_star) { return c.pp(d_star); }),
-           py::arg("d_star"),
+      .def("pp", py::vectorize([](Correlation& c, double d_star) { return c.pp(d_star); }), py::arg("d_star"),
            "F between two particles, centres d_star diameters apart (contact at 1). Array in, array out.")
       .def(
           "pw", py::vectorize([](Correlation& c, double h_over_d, double unobstructed) {
@@ -24,11 +25,4 @@ void bind_correlations(py::module_& module) {
           "unobstructed: the factor without particles between (cubic tables ignore it). Array in, array out.")
       .def_property_readonly("cutoff", &Correlation::pp_cutoff, "d_star beyond which pp is 0.")
       .def_property_readonly("solid_fraction", &Correlation::solid_fraction);
-  module.def(
-      "rewrite_table",
-      [](const std::string& table) {
-        return correlation_text(read_correlation(std::filesystem::path(table)));
-      },
-      py::arg("table"),
-      "The table as this version writes it, checked. Raises InputError with every problem.");
 }

@@ -102,7 +102,6 @@ def fit(files, table, *, form="transmittance", report=None):
     if report:
         command += ["--report", str(report)]
     done = subprocess.run(command, capture_output=True, text=True)
-    if done.returncode == 2:
-        raise _granrad.InputError(done.stderr.strip())
+    errors = {2: _granrad.InputError, 3: _granrad.IoError, 4: _granrad.ThresholdMissed}
     if done.returncode:
-        raise _granrad.NumericalError(done.stderr.strip())
+        raise errors.get(done.returncode, _granrad.NumericalError)(done.stderr.strip())
