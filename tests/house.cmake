@@ -5,3 +5,7 @@ granrad_test(unit/shortest_numbers granrad_scene)
 add_test(NAME cli.PagesInBrowser COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/page/pages_in_browser.py
   ${PROJECT_BINARY_DIR}/bin ${PROJECT_SOURCE_DIR})
 set_tests_properties(cli.PagesInBrowser PROPERTIES LABELS cli TIMEOUT 600 SKIP_RETURN_CODE 77)
+# what README and docs say
+add_test(NAME cli.Docs COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/docs/run_docs.py ${PROJECT_BINARY_DIR}/bin
+  ${PROJECT_SOURCE_DIR} $<$<BOOL:${GRANRAD_PYTHON}>:${PROJECT_BINARY_DIR}/python>)
+set_tests_properties(cli.Docs PROPERTIES LABELS cli TIMEOUT 600)

@@ -103,7 +103,7 @@ CorrelationTable read_correlation(TomlDocument& document, const std::string& nam
   root.choice({"format", "what this file is"}, {"granrad.correlation"});
   root.integer({"version", "of the format"}, 1, file_version);
   table.title = root.string({"title", "what the table describes"}, "");
-  table.form = root.choice({"form", "of the correlation; its equations are in docs/theory.md"},
+  table.form = root.choice({"form", "of the correlation; its equations are in docs/equations.md"},
                            {"cubic", "transmittance"}) == "transmittance"
                    ? CorrelationForm::transmittance
                    : CorrelationForm::cubic;
