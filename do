@@ -31,6 +31,7 @@ usage() {
   sed -n '2,3s/^# //p' "$root/do"
   cat <<'EOF'
   demo        a plug flow of hot-walled alumina, about 1 s of flow: table, frames and a page
+  fuzz [N]    N random scenes (100) against what must hold whatever they are; failures are made small and kept
   test        the test suite (minutes)
   test-long   the physics that takes long
   gates       layout of the sources, headers alone, unit tests under the address and undefined-behaviour sanitizers
@@ -141,6 +142,12 @@ case ${1:-} in
     say "testing (long)"
     export OMP_WAIT_POLICY=passive
     ctest --test-dir "$build" -L long -j "$(nproc)" --output-on-failure --no-tests=error
+    ;;
+  fuzz)
+    set_up
+    build granrun
+    "$root/tests/judge/judge.py" "$build/bin/granrun" --count "${2:-100}" --first "${3:-1}" \
+      --jobs "$(nproc)" --keep "$build/judge"
     ;;
   demo)
     set_up

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "dem/base/error.h"
+#include "dem/base/program.h"
 #include "raytrace/exchange.h"
 
 namespace granrad {
@@ -179,6 +180,7 @@ std::vector<double> balancing_factors(const ExchangeAreas& x, int& sweeps) {
   const std::size_t n = x.area_m2.size();
   std::vector<double> factor(n, 1), ratio(n, 1);
   for (sweeps = 0; sweeps < most_sweeps; ++sweeps) {
+    stop_if_interrupted();
 #pragma omp parallel for schedule(dynamic, 256) if (x.value.size() > worth_threads)
     for (std::size_t i = 0; i < n; ++i) {
       if (!closes(x, i)) continue;

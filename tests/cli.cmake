@@ -12,9 +12,15 @@ granrad_cli_test(granrun_bad_input granrad_flags)
 granrad_cli_test(granrun_run granrad_granrun)
 granrad_cli_test(granrun_end granrad_granrun)
 granrad_cli_test(granrun_case granrad_granrun)
+granrad_cli_test(granrun_results granrad_granrun nlohmann_json::nlohmann_json)
 granrad_cli_test(granrun_history granrad_granrun)
 granrad_cli_test(granrun_study granrad_granrun)
 granrad_cli_test(granrun_scenes granrad_flags)
 granrad_cli_test(granrun_liggghts granrad_granrun granrad_liggghts)
 granrad_cli_test(granrun_replay granrad_granrun)
 granrad_cli_test(granrun_engine_change granrad_granrun granrad_liggghts)
+
+# A few random scenes; ./do fuzz runs as many as asked for.
+add_test(NAME judge.short COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/judge/judge.py $<TARGET_FILE:granrun> --count 8
+  --keep ${PROJECT_BINARY_DIR}/judge)
+set_tests_properties(judge.short PROPERTIES LABELS cli TIMEOUT 300)

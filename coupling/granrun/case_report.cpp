@@ -60,6 +60,9 @@ void add_histories(HtmlReport& page, const History& h, const Results& r) {
   add_chart(page, "Wall-to-particle coefficients", "h, W/m²K", r,
             {series("all", h, "h_wp_W_m2K", "h_wp_error_W_m2K"), series("solid contacts", h, "h_ss_W_m2K"),
              series("gas lenses", h, "h_sfs_W_m2K"), series("radiation", h, "h_rad_W_m2K")});
+  add_chart(page, "Share of each path", "share of h", r,
+            {series("solid contacts", h, "share_ss"), series("gas lenses", h, "share_sfs"),
+             series("radiation", h, "share_rad")});
   add_chart(page, "Mean temperature", "T, K", r,
             {series("in the region", h, "mean_temperature_K"), series("leaving", h, "outlet_temperature_K")});
   add_chart(page, "Heat from the walls", "Q, W", r,
@@ -152,6 +155,26 @@ void add_profiles(HtmlReport& page, const CaseFolder& folder) {
   page.histogram("Particle temperatures, last frame", "T, K", {{"particles", beds.back().temperature_K}});
 }
 
+std::string with_error(const Average& average) {
+  if (!std::isfinite(average.mean)) return "";
+  if (!std::isfinite(average.standard_error)) return fmt::format("{:.5g}", average.mean);
+  return fmt::format("{:.5g} ± {:.2g}", average.mean, average.standard_error);
+}
+
+void add_walls(HtmlReport& page, const Results& results) {
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& wall : results.walls)
+    rows.push_back({wall.wall, fmt::format("{:.4g}", 1e6 * wall.area_m2),
+                    fmt::format("{:g}", wall.temperature_K), with_error(wall.Q_ss_W),
+                    with_error(wall.Q_sfs_W), with_error(wall.Q_rad_W), with_error(wall.Q_W),
+                    with_error(wall.flux_W_m2)});
+  if (rows.empty()) return;
+  page.heading("Heat given by each wall");
+  page.table({"wall", "area in the region, mm²", "T, K", "contacts, W", "gas, W", "radiation, W", "all, W",
+              "flux, W/m²"},
+             rows);
+}
+
 /// "107.9" and "0.5": two digits of the error, and the value to the same place.
 Tile tile(const std::string& label, const std::string& unit, const Average& average, double factor = 1) {
   const double value = factor * average.mean, error = std::abs(factor) * average.standard_error;
@@ -163,9 +186,9 @@ Tile tile(const std::string& label, const std::string& unit, const Average& aver
 void add_head(HtmlReport& page, const Results& r, const RunRecord& record) {
   page.verdict(
       fmt::format(
-          "{} Means from {:g} s to {:g} s. Energy stored and received differ by {:.1e} of the heat at most.",
+          "{} Means from {:g} s to {:g} s, {}. Energy stored and received differ by {:.1e} of the heat at most.",
           record.finished ? "Finished." : "Not finished: the state of its last frame and row.", r.from_s,
-          r.to_s, r.largest_energy_defect),
+          r.to_s, r.steady ? "steady" : r.note, r.largest_energy_defect),
       record.finished && r.largest_energy_defect < 1e-6);
   std::vector<Tile> tiles;
   const auto add = [&](const char* column, const std::string& label, const std::string& unit,
@@ -189,14 +212,21 @@ void add_head(HtmlReport& page, const Results& r, const RunRecord& record) {
 void add_results(HtmlReport& page, const Results& results) {
   std::vector<std::vector<std::string>> rows;
   for (const auto& column : history_columns()) {
-    const Average& average = results.column.at(column.name);
-    if (std::string(column.name) == "time_s" || !std::isfinite(average.mean)) continue;
-    rows.push_back(
-        {column.name, fmt::format("{:.6g}", average.mean),
-         std::isfinite(average.standard_error) ? fmt::format("{:.2g}", average.standard_error) : ""});
+    const auto average = results.column.find(column.name);
+    if (std::string(column.name) == "time_s" || average == results.column.end() ||
+        !std::isfinite(average->second.mean))
+      continue;
+    rows.push_back({column.name, fmt::format("{:.6g}", average->second.mean),
+                    std::isfinite(average->second.standard_error)
+                        ? fmt::format("{:.2g}", average->second.standard_error)
+                        : "",
+                    column.meaning});
   }
   page.heading(fmt::format("Means from {:g} s to {:g} s", results.from_s, results.to_s));
-  page.table({"quantity", "mean", "standard error"}, rows);
+  page.paragraph(results.steady ? "Steady: neither the mean temperature nor the heat drifts over this window."
+                                : results.note + ".");
+  page.table({"quantity", "mean", "standard error", "meaning"}, rows);
+  add_walls(page, results);
 }
 
 }  // namespace
@@ -207,7 +237,7 @@ int report_case(const std::filesystem::path& where, const RunOptions& options) {
   const RunRecord record = read_run_record(folder);
   HtmlReport page(record.scene_name);
   const bool has_rows = !history.at("time_s").empty();
-  const Results results = has_rows ? summarise(history) : Results{};
+  const Results results = has_rows ? summarise(folder, read_case(folder.root() / "scene.toml", {})) : Results{};
   if (has_rows) add_head(page, results, record);
   page.paragraph(fmt::format("Radiation: {}.", record.radiation));
   add_bed(page, folder);

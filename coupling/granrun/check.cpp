@@ -6,6 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "coupling/granrun/case_notes.h"
+#include "coupling/granrun/forecast.h"
+#include "coupling/heat/wall_coefficients.h"
 #include "coupling/simulation/radiation_source.h"
 #include "coupling/simulation/simulation.h"
 #include "dem/base/error.h"
@@ -59,7 +62,10 @@ void judge_flow(const Case& c, Verdict& verdict) {
   verdict.say(norm(scene.gravity_m_s2) > 0, fmt::format("gravity {:g} m/s2", norm(scene.gravity_m_s2)),
               "gravity: scene.gravity_m_s2 is 0");
   verdict.say(scene.feed.kind != FeedSettings::Kind::none, "feed: particles enter and leave",
-              "feed: no [feed], the particles stay the same");
+              "feed: no [feed], no particles come");
+  verdict.say(!scene.removals.empty(),
+              fmt::format("removal of particles in {} places", scene.removals.size()),
+              "removal: no [[remove]]");
   bool friction = false, rolling = false;
   for (const Material& material : scene.materials) {
     friction = friction || material.friction > 0;
@@ -93,11 +99,19 @@ void judge_radiation(const Case& c, Verdict& verdict) {
                 "radiosity solve: every surface is black");
   if (c.flow.engine == EngineKind::none && radiation.kind != RadiationKind::paths)
     verdict.left_out.push_back("new view factors per update: the bed is frozen, they are found once");
+}
+
+void judge_walls(const Case& c, const Bed& bed, Verdict& verdict) {
   for (WallRole role : {WallRole::isothermal, WallRole::adiabatic, WallRole::open, WallRole::excluded})
     if (has_role(c.flow, role))
       verdict.modelled.push_back(fmt::format("walls {}: {}", to_string(role), names_of(c.flow, role)));
-  verdict.say(has_role(c.flow, WallRole::isothermal), "wall-to-particle coefficients",
-              "wall-to-particle coefficients: no isothermal wall");
+  const auto walls = hot_walls(bed, c.flow.region);
+  const char* const coefficients = "wall-to-particle coefficients";
+  if (walls.empty())
+    verdict.left_out.push_back(fmt::format("{}: no isothermal wall in the region", coefficients));
+  else
+    verdict.say(at_one_temperature(bed, walls), coefficients,
+                fmt::format("{}: the isothermal walls have several temperatures", coefficients));
 }
 
 std::string seconds(double value) {
@@ -126,6 +140,32 @@ void print_limits(const Simulation& simulation) {
              plan.cuts(plan.end_tick) ? ", the last one cut short" : "");
 }
 
+std::string duration(double seconds) {
+  if (seconds < 100) return fmt::format("{:.2g} s", seconds);
+  if (seconds < 6000) return fmt::format("{:.0f} min", seconds / 60);
+  return seconds < 2e5 ? fmt::format("{:.1f} h", seconds / 3600)
+                       : fmt::format("{:.3g} days", seconds / 86400);
+}
+
+void print_forecast(const Case& c, Simulation& simulation, const RunOptions& options) {
+  const Bed bed = simulation.bed();
+  const Forecast cost = forecast(c, simulation, options.threads);
+  fmt::print("\nforecast for this machine{}\n", cost.measured
+                                                    ? ", from a trial of the bed at time 0"
+                                                    : ", the flow at 4 million particle-steps a second");
+  fmt::print("  flow {}, conduction {}, radiation {}, output {}: about {}\n", duration(cost.flow_s),
+             duration(cost.conduction_s), duration(cost.radiation_s), duration(cost.output_s),
+             duration(cost.total_s()));
+  fmt::print("  memory about {:.0f} MB, on disk {:.0f} frames of {:.2g} MB\n", cost.memory_bytes / 1e6,
+             cost.frames, cost.frame_bytes / 1e6);
+  const auto sources = source_costs(c, bed, options.threads);
+  if (sources.empty()) return;
+  std::string list;
+  for (const auto& one : sources)
+    list += fmt::format("{}{} {}", list.empty() ? "" : ", ", one.source, duration(one.seconds));
+  fmt::print("  computing for 1 % standard error of the wall heat at one update: {}\n", list);
+}
+
 }  // namespace
 
 int check_case(const Case& c, const RunOptions& options, bool defaults) {
@@ -137,6 +177,7 @@ int check_case(const Case& c, const RunOptions& options, bool defaults) {
   judge_flow(c, verdict);
   judge_conduction(c, verdict);
   judge_radiation(c, verdict);
+  judge_walls(c, simulation.bed(), verdict);
   fmt::print("modelled\n");
   for (const auto& text : verdict.modelled) fmt::print("  {}\n", text);
   fmt::print("left out\n");
@@ -144,8 +185,10 @@ int check_case(const Case& c, const RunOptions& options, bool defaults) {
   print_limits(simulation);
   if (const auto note = end_note(simulation.plan(), c.flow.end_time_s); !note.empty())
     fmt::print("  note: {}\n", note);
+  for (const auto& note : case_notes(c, simulation.bed())) fmt::print("  note: {}\n", note);
   fmt::print("\n{} particles at time 0, solid fraction {:.4f} in the region\n", simulation.bed().size(),
              solid_fraction(simulation.bed(), c.flow.region));
+  print_forecast(c, simulation, options);
   return exit_ok;
 }
 

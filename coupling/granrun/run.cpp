@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "coupling/granrun/case_notes.h"
 #include "coupling/granrun/results.h"
 #include "coupling/granrun/run_record.h"
 #include "coupling/simulation/case_folder.h"
@@ -54,6 +55,7 @@ void begin(Simulation& simulation, const Case& c, const std::filesystem::path& w
                                "give a later end, or start a new folder"));
   } else {
     simulation.start();
+    for (const auto& note : case_notes(c, simulation.bed())) say(options, "note: " + note);
     const double every_s = c.heat.radiation.every_s, motion_s = simulation.limits().motion_s;
     if (c.heat.radiation.kind != RadiationKind::none && every_s > motion_s)
       say(options, fmt::format("note: particles move more than their diameter between radiation updates "
@@ -66,8 +68,8 @@ void begin(Simulation& simulation, const Case& c, const std::filesystem::path& w
 
 std::string progress_detail(const Simulation& simulation, const HistoryRow& row) {
   std::string text = fmt::format("t = {:.4g} s  N = {}", simulation.bed().time_s, simulation.bed().size());
-  if (row.mean_temperature_K > 0) text += fmt::format("  T = {:.1f} K", row.mean_temperature_K);
-  if (std::isfinite(row.h_wp_W_m2K)) text += fmt::format("  h = {:.1f} W/m2K", row.h_wp_W_m2K);
+  if (row["mean_temperature_K"] > 0) text += fmt::format("  T = {:.1f} K", row["mean_temperature_K"]);
+  if (std::isfinite(row["h_wp_W_m2K"])) text += fmt::format("  h = {:.1f} W/m2K", row["h_wp_W_m2K"]);
   return text;
 }
 
@@ -87,6 +89,7 @@ int stop_requested(const RunOptions& options, Clock::time_point start) {
 int follow(Simulation& simulation, const Case& c, const CaseFolder& folder, const RunOptions& options,
            Clock::time_point start) {
   HistoryWriter history(folder.history(), simulation.last_row_s());
+  WallHistoryWriter walls(folder.wall_history(), simulation.last_row_s());
   if (!history.note().empty()) fmt::print(stderr, "note: {}\n", history.note());
   if (simulation.bed().step == 0) save(simulation, folder);
   const auto& plan = simulation.plan();
@@ -96,7 +99,9 @@ int follow(Simulation& simulation, const Case& c, const CaseFolder& folder, cons
     if (plan.cuts(simulation.tick() + 1)) save(simulation, folder);  // where a longer run goes on
     simulation.advance();
     if (plan.row_at(simulation.tick())) {
-      history.append(row = simulation.row());
+      const Record record = simulation.record();
+      history.append(row = record.row);
+      walls.append(record.walls);
       if (options.verbose())
         fmt::print(stderr, "{}  threads {} of {}\n", progress_detail(simulation, row),
                    simulation.flow_threads().used, simulation.flow_threads().most);
@@ -150,7 +155,8 @@ int run_case(const Case& c, const std::filesystem::path& where, const RunOptions
     write_run_record(folder, c, simulation, options);
     return stop;
   }
-  const Results results = summarise(read_history(folder.history()));
+  const Results results = summarise(folder, c);
+  write_results(folder, c, results);
   write_run_record(folder, c, simulation, options, &results);
   if (!options.quiet()) print_results(c, results, simulation, folder);
   return exit_ok;

@@ -23,11 +23,14 @@ nlohmann::ordered_json as_json(const Results& results) {
   nlohmann::ordered_json json;
   json["from_s"] = results.from_s;
   json["to_s"] = results.to_s;
+  json["steady"] = results.steady;
   json["largest_energy_defect"] = results.largest_energy_defect;
   if (std::isfinite(results.final_mean_temperature_K))
     json["final_mean_temperature_K"] = results.final_mean_temperature_K;
   for (const auto& column : history_columns()) {
-    const auto& average = results.column.at(column.name);
+    const auto found = results.column.find(column.name);
+    if (found == results.column.end()) continue;
+    const Average& average = found->second;
     if (std::isfinite(average.mean)) json["means"][column.name] = average.mean;
     if (std::isfinite(average.standard_error)) json["standard_errors"][column.name] = average.standard_error;
   }

@@ -2,28 +2,38 @@
 
 #include <cmath>
 
+#include "coupling/heat/wall_area.h"
+
 namespace granrad {
 
-std::optional<WallCoefficients> wall_coefficients(const Bed& bed, const HeatPaths& heat_W,
-                                                  double mean_temperature_K, double diameter_m,
-                                                  double gas_conductivity_W_mK) {
-  double wall_area = 0, weighted_temperature = 0;
-  for (const auto& wall : bed.walls) {
-    if (wall.role != WallRole::isothermal) continue;
-    const double a = area(wall);
-    wall_area += a;
-    weighted_temperature += a * wall.temperature_K;
-  }
-  if (wall_area == 0) return {};
-  const double difference = weighted_temperature / wall_area - mean_temperature_K;
-  if (std::abs(difference) < 1e-6) return {};
+std::vector<std::size_t> hot_walls(const Bed& bed, const Box& region) {
+  std::vector<std::size_t> walls;
+  for (std::size_t w = 0; w < bed.walls.size(); ++w)
+    if (bed.walls[w].role == WallRole::isothermal && area_inside(bed.walls[w], region) > 0)
+      walls.push_back(w);
+  return walls;
+}
 
-  const double scale = 1 / (difference * wall_area);
-  WallCoefficients result;
-  result.h_W_m2K = {heat_W.solid * scale, heat_W.gas * scale, heat_W.radiation * scale};
-  result.h_wp_W_m2K = result.h_W_m2K.total();
-  if (gas_conductivity_W_mK > 0) result.Nu_d = result.h_wp_W_m2K * diameter_m / gas_conductivity_W_mK;
-  return result;
+bool at_one_temperature(const Bed& bed, const std::vector<std::size_t>& walls) {
+  constexpr double same_temperature = 1e-6;
+  for (const std::size_t w : walls) {
+    const double first = bed.walls[walls.front()].temperature_K;
+    if (std::abs(bed.walls[w].temperature_K - first) > same_temperature * first) return false;
+  }
+  return true;
+}
+
+std::optional<WallCoefficients> wall_coefficients(const Bed& bed, const Box& region, const HeatPaths& heat_W,
+                                                  double mean_temperature_K) {
+  const auto walls = hot_walls(bed, region);
+  if (walls.empty() || !at_one_temperature(bed, walls)) return {};
+  double wall_area = 0;
+  for (const std::size_t w : walls) wall_area += area_inside(bed.walls[w], region);
+  const double difference = bed.walls[walls.front()].temperature_K - mean_temperature_K;
+  if (std::abs(difference) < 1e-6) return {};
+  const double per_watt = 1 / (difference * wall_area);
+  return WallCoefficients{{heat_W.solid * per_watt, heat_W.gas * per_watt, heat_W.radiation * per_watt},
+                          per_watt};
 }
 
 double peclet_length(double velocity_m_s, double length_m, const Material& material) {

@@ -22,6 +22,7 @@ std::unique_ptr<Engine> make_engine(const Scene& scene, const Bed& bed, double s
 
 Flow::Flow(const Scene& scene, int threads) : scene_(scene), threads_(threads) {
   if (scene.feed.kind != FeedSettings::Kind::none) feed_ = std::make_unique<Feed>(scene);
+  if (!feed_ && !scene.removals.empty()) feed_ = std::make_unique<Feed>(scene);
 }
 
 Bed Flow::first_bed() {

@@ -75,6 +75,7 @@ void HeatModel::radiate(Bed& bed) {
                               static_cast<std::uint64_t>(radiation_.updates));
   const RadiativeHeat& heat = drawn.all;
   bed.radiative_heat_W = std::move(drawn.heat_W);
+  walls_.hold_radiation(make_enclosure(bed, case_.flow.region), heat.heat_W);
   radiation_.updates += 1;
   radiation_.rays += heat.rays;
   radiation_.wall_heat_W = heat.isothermal_wall_heat_W;
@@ -84,7 +85,9 @@ void HeatModel::radiate(Bed& bed) {
 }
 
 void HeatModel::advance(Bed& bed, double dt_s) {
-  ledger_.receive(advance_temperatures(bed, conductances_, dt_s));
+  std::vector<HeatPaths> from_walls_J;
+  ledger_.receive(advance_in_parts(bed, conductances_, dt_s, from_walls_J));
+  walls_.add(from_walls_J, dt_s);
   ledger_.miss(radiation_.missed_W * dt_s);
 }
 
@@ -111,7 +114,7 @@ void HeatModel::load(const StateBlock& radiation, const StateBlock& ledger) {
 
 std::vector<char> in_region(const Bed& bed, const Box& region) {
   std::vector<char> inside(bed.size());
-  for (std::size_t i = 0; i < bed.size(); ++i) inside[i] = region.contains(bed.position_m[i]);
+  for (std::size_t i = 0; i < bed.size(); ++i) inside[i] = region.contains(wrapped_into_box(bed, bed.position_m[i]));
   return inside;
 }
 

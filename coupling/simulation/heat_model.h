@@ -6,6 +6,7 @@
 #include "coupling/heat/energy_ledger.h"
 #include "coupling/simulation/flow.h"
 #include "coupling/simulation/heat_scene.h"
+#include "coupling/simulation/wall_heats.h"
 #include "raytrace/exchange_source.h"
 
 namespace granrad {
@@ -25,7 +26,10 @@ class HeatModel {
  public:
   HeatModel(const Case& c, int threads = 0);
   /// Opens the books on the bed at time 0.
-  void start(const Bed& bed) { ledger_.start(bed); }
+  void start(const Bed& bed) {
+    ledger_.start(bed);
+    walls_.start(bed);
+  }
 
   /// Conductances of the bed as it is; those of a frozen bed are kept. Empty when nothing conducts.
   const Conductances& conduct(const Bed& bed, Flow& flow);
@@ -43,8 +47,11 @@ class HeatModel {
 
   const EnergyLedger& ledger() const { return ledger_; }
   const RadiationTotals& radiation() const { return radiation_; }
+  const WallHeats& walls() const { return walls_; }
   StateBlock save() const;
   StateBlock save_ledger() const { return ledger_.save(); }
+  StateBlock save_walls() const { return walls_.save(); }
+  void load_walls(const StateBlock& walls) { walls_.load(walls); }
   void load(const StateBlock& radiation, const StateBlock& ledger);
 
  private:
@@ -57,6 +64,7 @@ class HeatModel {
   Conductances conductances_;
   bool conductances_known_ = false;
   EnergyLedger ledger_;
+  WallHeats walls_;
   RadiationTotals radiation_;
 };
 

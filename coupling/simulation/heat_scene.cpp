@@ -186,6 +186,24 @@ ValidateSettings read_validate(TomlTable table, const Scene& scene) {
   return validate;
 }
 
+void read_averaging(TomlTable table, const Scene& scene, HeatScene& heat) {
+  heat.output.average_from_s = table.optional_number(
+      {"average_from_s", "means of the results start here", "where the history becomes stationary"},
+      {.unit = "s", .min = 0});
+  if (heat.output.average_from_s && *heat.output.average_from_s >= scene.end_time_s)
+    table.problem("average_from_s", "must be before scene.end_time_s: there is nothing to average after it");
+}
+
+/// Sources that are compared all heat at the updates of the run's own.
+void refuse_intervals_of_compared(TomlTable validate) {
+  const auto refuse = [](TomlTable table) {
+    if (table.has("every_s"))
+      table.problem("every_s", "is that of [radiation] for every source compared; leave it out");
+  };
+  refuse(validate.table("reference"));
+  for (auto& compared : validate.tables("compare")) refuse(compared);
+}
+
 void check_heat_has_something_to_do(TomlDocument& document, const Scene& scene, const HeatScene& heat) {
   if (scene.engine == EngineKind::none && heat.radiation.kind == RadiationKind::none &&
       !heat.conduction.gas && !heat.conduction.solid)
@@ -222,6 +240,9 @@ HeatScene read_heat_scene(TomlDocument& document, const Scene& scene) {
   heat.radiation = read_radiation(radiation, scene, radiation.present() ? "paths" : "none");
   heat.output = read_output(root.table({"output", "What is written when"}), scene);
   heat.validate = read_validate(root.table({"validate", "What granrun validate compares"}), scene);
+  read_averaging(root.table({"output", "What is written when"}), scene, heat);
+  refuse_intervals_of_compared(root.table({"validate", "What granrun validate compares"}));
+  heat.modulus_exponent_chosen = root.table({"conduction", "Heat through contacts"}).has("modulus_exponent");
   check_heat_has_something_to_do(document, scene, heat);
   return heat;
 }

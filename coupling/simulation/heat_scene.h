@@ -30,6 +30,7 @@ struct RadiationSettings {
 /// [output]
 struct OutputSettings {
   double every_s = 0, frames_every_s = 0;
+  std::optional<double> average_from_s{};  ///< means start here; absent: where the history becomes stationary
 };
 
 /// [validate]: what `granrun validate` compares. Absent: a choice by the scene (see compare_sources.h).
@@ -42,7 +43,8 @@ struct ValidateSettings {
 
 /// The heat part of what the user wrote: SI, checked.
 struct HeatScene {
-  ConductionSettings conduction;   ///< [conduction], and [gas]: absent, no lenses
+  ConductionSettings conduction;         ///< [conduction], and [gas]: absent, no lenses
+  bool modulus_exponent_chosen = false;  ///< by the scene, not by default
   int conduction_every_steps = 0;  ///< DEM steps between conduction updates; 0: chosen (see time_plan.h)
   RadiationSettings radiation;
   OutputSettings output;

@@ -1,48 +1,95 @@
 #pragma once
+#include <algorithm>
+#include <array>
 #include <filesystem>
+#include <iterator>
+#include <limits>
 #include <map>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "coupling/simulation/csv_log.h"
 
 namespace granrad {
 
-/// One row of history.csv. Flows and heats are means over the interval since the row before, the rest is the
-/// state at time_s. What has no value (no particle in the region, no isothermal wall, nothing moves) is nan
-/// here and an empty cell in the file.
-struct HistoryRow {
-  double time_s = 0, particle_count = 0, solid_fraction = 0, mean_temperature_K = 0;
-  double mass_flow_in_kg_s = 0, mass_flow_out_kg_s = 0;
-  double Q_ss_W = 0, Q_sfs_W = 0, Q_rad_W = 0;
-  double h_ss_W_m2K = 0, h_sfs_W_m2K = 0, h_rad_W_m2K = 0, h_wp_W_m2K = 0, Nu_d = 0, energy_defect = 0;
-  // beyond the contract
-  double Q_rad_error_W = 0, h_wp_error_W_m2K = 0;  ///< standard errors of the ray tracing
-  double region_particle_count = 0, mean_velocity_m_s = 0, outlet_temperature_K = 0, Pe_L = 0, Pe_d_star = 0;
-  double coordination_number = 0, residence_time_s = 0;
-};
-
-/// A cell of a table of numbers: empty where there is no value, which pandas and spreadsheets read as
-/// missing.
-std::string cell(double value, int digits = 12);
-
-/// The columns in file order: the contract's fifteen, then ours.
+/// A column of history.csv: its name with its unit, and what it means.
 struct HistoryColumn {
-  const char* name;
-  double HistoryRow::*value;
+  const char *name, *meaning;
 };
-const std::vector<HistoryColumn>& history_columns();
 
-/// Appends rows; each row reaches the disk before the next is computed.
-class HistoryWriter {
+/// The columns in file order: the contract's fifteen, then ours. Flows and heats are means over the interval since
+/// the row before, the rest is the state at time_s. A new column is a line here and its value in recorder.cpp.
+inline constexpr HistoryColumn history_column_list[] = {
+    {"time_s", "end of the interval"},
+    {"particle_count", "particles there are"},
+    {"solid_fraction", "volume of the particles in the region over its volume"},
+    {"mean_temperature_K", "number average in the region"},
+    {"mass_flow_in_kg_s", "fed"},
+    {"mass_flow_out_kg_s", "left or removed"},
+    {"Q_ss_W", "from the walls through contacts"},
+    {"Q_sfs_W", "from the walls through the gas"},
+    {"Q_rad_W", "by radiation, all that the particles received"},
+    {"h_ss_W_m2K", "wall coefficient through contacts"},
+    {"h_sfs_W_m2K", "wall coefficient through the gas"},
+    {"h_rad_W_m2K", "wall coefficient of radiation"},
+    {"h_wp_W_m2K", "wall coefficient, all three"},
+    {"Nu_d", "h_wp d / k_gas"},
+    {"energy_defect", "|stored - received| / received since time 0"},
+    {"Q_rad_error_W", "standard error of Q_rad_W by ray tracing"},
+    {"h_wp_error_W_m2K", "standard error of h_wp by ray tracing"},
+    {"region_particle_count", "particles in the region"},
+    {"mean_velocity_m_s", "downwards, number average in the region"},
+    {"outlet_temperature_K", "of what left, by heat capacity"},
+    {"Pe_L", "Peclet number of the region's height"},
+    {"Pe_d_star", "modified Peclet number"},
+    {"coordination_number", "contacts per particle of the region"},
+    {"residence_time_s", "mass in the region over mass flow out"},
+    {"Nu_d_ss", "h_ss d / k_gas"},
+    {"Nu_d_sfs", "h_sfs d / k_gas"},
+    {"Nu_d_rad", "h_rad d / k_gas"},
+    {"Nu_d_error", "standard error of Nu_d by ray tracing"},
+    {"share_ss", "h_ss / h_wp"},
+    {"share_sfs", "h_sfs / h_wp"},
+    {"share_rad", "h_rad / h_wp"},
+    {"heat_out_W", "m c T of what left or was removed"},
+};
+
+inline std::span<const HistoryColumn> history_columns() {
+  return history_column_list;
+}
+
+/// The number of a column, found when the program is compiled: a name that is none does not compile.
+struct HistoryKey {
+  std::size_t index;
+  consteval HistoryKey(const char* name) : index(0) {
+    while (std::string_view(history_column_list[index].name) != name) ++index;
+  }
+};
+
+/// One row of history.csv. What has no value (no particle in the region, no hot wall, nothing moves) is nan here
+/// and an empty cell in the file.
+class HistoryRow {
  public:
-  /// Starts a new file, or goes on after the rows up to `last_row_s` > 0 and drops later ones. Throws IoError.
-  explicit HistoryWriter(const std::filesystem::path& file, double last_row_s = 0);
-  void append(const HistoryRow& row);
-  /// What is wrong with the rows that were there: their last is not that of `last_row_s`. Empty when nothing is.
-  const std::string& note() const { return note_; }
+  HistoryRow() { values_.fill(std::numeric_limits<double>::quiet_NaN()); }
+  double& operator[](HistoryKey key) { return values_[key.index]; }
+  double operator[](HistoryKey key) const { return values_[key.index]; }
+  const auto& values() const { return values_; }
 
  private:
-  std::filesystem::path file_;
-  std::string note_;
+  std::array<double, std::size(history_column_list)> values_;
+};
+
+/// Appends rows to history.csv.
+class HistoryWriter {
+ public:
+  HistoryWriter(const std::filesystem::path& file, double last_row_s);  ///< see CsvLog
+  void append(const HistoryRow& row);
+  const std::string& note() const { return log_.note(); }
+
+ private:
+  CsvLog log_;
 };
 
 /// A history read back: columns by name, nan where a cell is empty; an absent or empty file has no rows. Throws

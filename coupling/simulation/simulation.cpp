@@ -77,6 +77,7 @@ bool Simulation::resume(const Snapshot& frame) {
   bed_ = frame.bed;
   flow_.load(saved_block(frame, "feed"));
   heat_.load(saved_block(frame, "radiation"), saved_block(frame, "ledger"));
+  heat_.load_walls(saved_block(frame, "walls"));
   recorder_.load(saved_block(frame, "recorder"));
   plan_ = plan;
   tick_ = *tick;
@@ -111,6 +112,7 @@ void Simulation::write_checkpoint(const std::filesystem::path& file) const {
   state["feed"] = flow_.save();
   state["radiation"] = heat_.save();
   state["ledger"] = heat_.save_ledger();
+  state["walls"] = heat_.save_walls();
   state["recorder"] = recorder_.save();
   write_frame(file, bed_, state);
 }

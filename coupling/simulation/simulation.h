@@ -28,7 +28,7 @@ class Simulation {
 
   /// One tick: move, conduct, radiate when due, heat.
   void advance();
-  HistoryRow row() { return recorder_.row(bed_, flow_, heat_); }
+  Record record() { return recorder_.record(bed_, flow_, heat_); }
   void write_checkpoint(const std::filesystem::path& file) const;
 
   bool finished() const { return bed_.step >= plan_.end_step; }

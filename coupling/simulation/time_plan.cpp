@@ -17,7 +17,8 @@ namespace {
 constexpr std::int64_t usual_steps_per_tick =
     100;  // contacts last hundreds of steps; conduction is slower still
 constexpr std::int64_t parts_of_a_frozen_tick = 1000;  // a decimal end falls on one of them
-constexpr double whole_number_tolerance = 1e-6;        // decimal input: 0.01 / 1e-5 is a whole number
+constexpr double most_steps = 1e13, most_rows = 1e8, most_frames = 1e6;
+constexpr double whole_number_tolerance = 1e-6;  // decimal input: 0.01 / 1e-5 is a whole number
 
 struct Interval {
   const char* key;
@@ -82,6 +83,14 @@ void refuse_beyond(std::vector<std::string>& problems, const char* key, double v
                                fmt::format("the largest allowed value is {:.4g} s", limit)));
 }
 
+/// A run no machine ends, or no disk holds.
+void refuse_endless(std::vector<std::string>& problems, const char* what, double count, double most,
+                    const char* advice) {
+  if (!(count <= most))
+    problems.push_back(
+        advised(fmt::format("the run would take {:.3g} {} (at most {:g})", count, what, most), advice));
+}
+
 /// The DEM step, or the heat step of a frozen bed.
 double choose_step(const Case& c, const StepLimits& limits, double conduction_limit_s,
                    std::vector<std::string>& problems) {
@@ -113,8 +122,6 @@ std::int64_t choose_steps_per_tick(const Case& c, std::int64_t divisor, double s
                     "steps, which it does not divide)",
                     wanted, divisor),
         fmt::format("try {}", largest_divisor(divisor, wanted))));
-  refuse_beyond(problems, "conduction.every_steps * dem.step_s", static_cast<double>(wanted) * step_s,
-                conduction_limit_s, "0.1 of the shortest conduction time constant");
   return wanted;
 }
 
@@ -142,6 +149,11 @@ TimePlan make_time_plan(const Case& c, const StepLimits& limits, double conducti
   const std::int64_t radiation = every.radiation ? steps_of(*every.radiation) : 0;
   const std::int64_t row = steps_of(every.row), frame = steps_of(every.frame);
   const std::int64_t divisor = std::gcd(radiation, std::gcd(row, frame));
+  refuse_endless(problems, "steps", c.flow.end_time_s / plan.step_s, most_steps, "shorten scene.end_time_s");
+  refuse_endless(problems, "rows of history.csv", c.flow.end_time_s / every.row.seconds, most_rows,
+                 "raise output.every_s");
+  refuse_endless(problems, "frames", c.flow.end_time_s / every.frame.seconds, most_frames,
+                 "raise output.frames_every_s");
   plan.steps_per_tick = choose_steps_per_tick(c, divisor, plan.step_s, conduction_limit_s, problems);
   if (!problems.empty()) throw InputError(problems);
 

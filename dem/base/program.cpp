@@ -71,6 +71,10 @@ void install_signal_handlers() {
   std::signal(SIGUSR1, remember_checkpoint);
 }
 
+void stop_if_interrupted() {
+  if (interrupt_signal()) throw Error(exit_numerical_failure, "stopped by a signal");
+}
+
 bool take_checkpoint_request() {
   return checkpoint_wanted.exchange(false);
 }

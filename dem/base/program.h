@@ -21,6 +21,8 @@ int run_program(const std::string& name, const std::function<int()>& body);
 void install_signal_handlers();
 /// 0, or the signal number received.
 int interrupt_signal();
+/// Throws an Error when a signal asked to stop: for loops that may take long, so that it is obeyed within seconds.
+void stop_if_interrupted();
 /// Whether a SIGUSR1 came since it was last asked.
 bool take_checkpoint_request();
 

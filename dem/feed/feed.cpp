@@ -1,5 +1,6 @@
 #include "dem/feed/feed.h"
 
+#include <algorithm>
 #include <variant>
 
 #include "dem/base/constants.h"
@@ -34,18 +35,23 @@ AnyFeed make_feed(const Scene& scene) {
   return NoFeed{};
 }
 
-double heat_J(const Bed& bed, std::size_t i) {
-  return mass_kg(bed, i) * bed.materials[bed.material[i]].specific_heat_J_kgK * bed.temperature_K[i];
+double heat_capacity_J_K(const Bed& bed, std::size_t i) {
+  return mass_kg(bed, i) * bed.materials[bed.material[i]].specific_heat_J_kgK;
 }
 
-void remove_below(double z, Bed& bed, FeedTotals& totals) {
+/// Takes out the particles whose centre is below z or in one of the boxes.
+void remove(double z, const std::vector<Box>& boxes, Bed& bed, FeedTotals& totals) {
   std::vector<char> keep(bed.size(), 1);
   const auto removed_before = totals.removed;
   for (std::size_t i = 0; i < bed.size(); ++i) {
-    if (bed.position_m[i].z >= z) continue;
+    const Vec3 place = wrapped_into_box(bed, bed.position_m[i]);
+    const bool leaves = place.z < z || std::any_of(boxes.begin(), boxes.end(),
+                                                   [&](const Box& box) { return box.contains(place); });
+    if (!leaves) continue;
     keep[i] = 0;
     totals.mass_out_kg += mass_kg(bed, i);
-    totals.heat_out_J += heat_J(bed, i);
+    totals.heat_capacity_out_J_K += heat_capacity_J_K(bed, i);
+    totals.heat_out_J += heat_capacity_J_K(bed, i) * bed.temperature_K[i];
     ++totals.removed;
   }
   if (totals.removed > removed_before) bed.remove_unless(keep);
@@ -54,7 +60,7 @@ void remove_below(double z, Bed& bed, FeedTotals& totals) {
 void count_inserted(const Bed& bed, std::size_t first_new, FeedTotals& totals) {
   for (std::size_t i = first_new; i < bed.size(); ++i) {
     totals.mass_in_kg += mass_kg(bed, i);
-    totals.heat_in_J += heat_J(bed, i);
+    totals.heat_in_J += heat_capacity_J_K(bed, i) * bed.temperature_K[i];
     ++totals.inserted;
   }
 }
@@ -64,11 +70,13 @@ void count_inserted(const Bed& bed, std::size_t first_new, FeedTotals& totals) {
 struct Feed::Impl {
   bool frozen;
   AnyFeed feed;
+  std::vector<Box> removals;
   FeedTotals totals;
 };
 
 Feed::Feed(const Scene& scene)
-    : impl_(std::make_unique<Impl>(Impl{scene.engine == EngineKind::none, make_feed(scene), {}})) {}
+    : impl_(std::make_unique<Impl>(
+          Impl{scene.engine == EngineKind::none, make_feed(scene), scene.removals, {}})) {}
 Feed::~Feed() = default;
 Feed::Feed(Feed&&) noexcept = default;
 Feed& Feed::operator=(Feed&&) noexcept = default;
@@ -80,7 +88,7 @@ void Feed::start(Bed& bed) {
 void Feed::update(Bed& bed) {
   if (impl_->frozen) return;
   const auto step = [&](auto& feed) {
-    remove_below(feed.leaves_below_m(), bed, impl_->totals);
+    remove(feed.leaves_below_m(), impl_->removals, bed, impl_->totals);
     const auto first_new = bed.size();
     feed.insert_due(bed, impl_->totals);
     count_inserted(bed, first_new, impl_->totals);
@@ -99,6 +107,7 @@ StateBlock Feed::save() const {
   state.reals["mass_out_kg"] = {t.mass_out_kg};
   state.reals["heat_in_J"] = {t.heat_in_J};
   state.reals["heat_out_J"] = {t.heat_out_J};
+  state.reals["heat_capacity_out_J_K"] = {t.heat_capacity_out_J_K};
   state.integers["inserted"] = {t.inserted};
   state.integers["removed"] = {t.removed};
   state.integers["nudged"] = {t.nudged};
@@ -113,6 +122,7 @@ void Feed::load(const StateBlock& state) {
   t.mass_out_kg = saved_real(state, "mass_out_kg");
   t.heat_in_J = saved_real(state, "heat_in_J");
   t.heat_out_J = saved_real(state, "heat_out_J");
+  t.heat_capacity_out_J_K = saved_real(state, "heat_capacity_out_J_K");
   t.inserted = saved_integer(state, "inserted");
   t.removed = saved_integer(state, "removed");
   t.nudged = saved_integer(state, "nudged");

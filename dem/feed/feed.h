@@ -11,12 +11,13 @@ namespace granrad {
 struct FeedTotals {
   double mass_in_kg = 0, mass_out_kg = 0;
   double heat_in_J = 0, heat_out_J = 0;  ///< m c T of the particles inserted and removed
+  double heat_capacity_out_J_K = 0;      ///< m c of those removed
   std::int64_t inserted = 0, removed = 0;
   std::int64_t nudged = 0;   ///< of the inserted: moved aside because their place was taken
   std::int64_t waiting = 0;  ///< due now, but without a free place so far (carried to the next update)
 };
 
-/// Inserts and removes particles between engine calls. Deterministic: what it does depends on the scene, the
+/// Inserts and removes particles between engine calls; takes out what comes into a [[remove]] place as well. Deterministic: what it does depends on the scene, the
 /// Bed and its saved state only. With `engine = "none"` the filling at time 0 is all that happens.
 /// How particles come and go: dem/feed/plug_feed.h, dem/feed/hopper_feed.h.
 class Feed {

@@ -3,6 +3,8 @@
 
 namespace granrad {
 
+class Columns;
+
 /// Moving bed: `particle_count` spheres poured into `fill_region`, leaving below `remove_below_m`.
 ///
 /// Start: a random packing from the bottom of the region up (solid fraction `solid_fraction`, default 0.5),
@@ -10,7 +12,9 @@ namespace granrad {
 /// later. Refill: the bed is kept at `particle_count`. Each missing sphere is set down cold at a random place
 /// of the region, just above the highest sphere there (heap or falling spheres), so it never overlaps; when
 /// the region is full there, it waits. `mass_flow_kg_s` > 0 caps the rate, counted from the start.
-/// `refill = false`: one batch, until `particle_count` ids are used.
+/// `refill = false`: one batch, until `particle_count` ids are used. Poured (`rate_1_s` > 0): nothing at the start,
+/// then `rate_1_s` spheres a second until `particle_count` have come (with `refill`: are there). Layers too thin for the
+/// solid fraction start looser, down to single spheres.
 ///
 /// Places are keyed by the id of the sphere to come, so without a cap all it does follows from the Bed: a run
 /// that starts from a filled bed (`[particles] file`) goes on bit for bit like the one that filled it.
@@ -25,8 +29,8 @@ class HopperFeed {
 
  private:
   std::int64_t due(const Bed& bed, const FeedTotals& totals) const;
-  bool drop_one(Bed& bed, std::vector<std::size_t>& in_region) const;
-  double floor_at(const Bed& bed, const std::vector<std::size_t>& in_region, double x, double y) const;
+  bool pack(Bed& bed, double solid_fraction) const;
+  bool drop_one(Bed& bed, Columns& columns) const;
   void add(Bed& bed, const Vec3& position) const;
 
   FeedSettings settings_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/base/program.h"
 #include "dem/packing/packing_cells.h"
 
 namespace granrad {
@@ -157,6 +158,7 @@ double relax_overlaps(const PackingBox& where, const std::vector<double>& radius
   Forces forces{std::vector<Vec3>(position.size())};
   Fire fire(position.size());
   for (int step = 0; step < most_steps; ++step) {
+    stop_if_interrupted();
     compute(where, radius_m, inflation, position, neighbours.pairs(position), forces);
     if (forces.worst_overlap < apart_enough) break;
     fire.mix(forces.on);

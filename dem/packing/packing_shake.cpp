@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "dem/base/random.h"
+#include "dem/base/program.h"
 #include "dem/packing/packing_cells.h"
 
 namespace granrad {
@@ -51,6 +52,7 @@ void shake_spheres(const PackingBox& where, const std::vector<double>& radius_m,
     });
   };
   for (int sweep = 0; sweep < sweeps; ++sweep) {
+    stop_if_interrupted();
     int accepted = 0;
     for (int i = 0; i < n; ++i) {
       if (may_be_at && !may_be_at(position[i])) continue;

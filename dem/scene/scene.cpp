@@ -124,6 +124,7 @@ Scene read_scene(TomlDocument& document) {
   if (scene.feed.kind == FeedSettings::Kind::plug && scene.gravity_m_s2 != Vec3{})
     general.problem("gravity_m_s2",
                     "must be zero with [feed] kind = \"plug\": particles would fall out of the plug");
+  read_removals(root, scene);
   return scene;
 }
 

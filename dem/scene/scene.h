@@ -17,11 +17,12 @@ struct FeedSettings {
   enum class Kind { none, plug, hopper };
   Kind kind = Kind::none;
   double solid_fraction = 0;  ///< plug: target in the channel
-  double mass_flow_kg_s = 0;  ///< plug: rho phi A v; hopper: refill rate when > 0
+  double mass_flow_kg_s = 0;  ///< plug: rho phi A v; hopper: of the refill at most, when > 0
   double velocity_m_s = 0;    ///< plug: downward speed (towards z_min)
   double transverse_velocity_std_m_s = 0;
   bool start_filled = true;         ///< plug: channel full at time 0; false: empty
-  std::int64_t particle_count = 0;  ///< hopper: particles kept in the system
+  std::int64_t particle_count = 0;  ///< hopper: particles kept in the system, or poured in all
+  double rate_1_s = 0;              ///< hopper, > 0: poured at this rate from the start, into what is there
   Box fill_region{};          ///< hopper: where particles are inserted ([feed.fill_region] min_m, max_m)
   bool refill = true;         ///< hopper: what left comes back cold at the top; false: one batch
   double remove_below_m = 0;  ///< hopper: particles whose centre falls below this z leave
@@ -55,6 +56,7 @@ struct Scene {
   std::vector<Wall> walls;         ///< the box's six in the order x_min..z_max, then polygons, then meshes
   std::size_t box_wall_count = 0;  ///< how many of them, in front, are faces of the box
   std::array<bool, 3> periodic{};
+  std::vector<Box> removals;  ///< [[remove]]: particles whose centre comes into one of these leave
   Box region;                               ///< the heat-transfer region
   double particle_diameter_m = 0;           ///< of the feed's particles; with a file, its mean unless given
   double particle_temperature_K = 300;      ///< of the feed's particles, and of a file without temperatures

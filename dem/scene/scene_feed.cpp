@@ -61,42 +61,68 @@ void read_plug(TomlTable& feed, Scene& scene) {
   scene.feed.start_filled = feed.boolean({"start_filled", "the channel is full at time 0"}, true);
 }
 
-/// particle_count, or as many particles as make up mass_kg.
-void read_hopper_count(TomlTable& feed, Scene& scene) {
-  const double d = scene.particle_diameter_m;
-  const double particle_mass = pi / 6 * d * d * d * scene.materials[0].density_kg_m3;
-  const auto mass = feed.optional_number({"mass_kg", "mass to fill in, instead of particle_count"},
+/// particle_count, or as many particles as make up mass_kg; without limit when they are poured at a rate.
+void read_hopper_count(TomlTable& feed, Scene& scene, double particle_mass_kg) {
+  constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
+  const Key count_key{"particle_count", "particles kept in the system; with a rate, poured in all"};
+  const auto mass = feed.optional_number({"mass_kg", "instead of particle_count: their mass"},
                                          {.unit = "kg", .min = 0, .min_exclusive = true});
   if (!mass) {
-    scene.feed.particle_count = feed.integer({"particle_count", "particles to fill in", "from mass_kg"}, 1,
-                                             std::numeric_limits<std::int32_t>::max());
+    if (scene.feed.rate_1_s > 0)
+      scene.feed.particle_count = feed.integer(count_key, 1, most, most);
+    else
+      scene.feed.particle_count = feed.integer(count_key, 1, most);
     return;
   }
-  const std::int64_t from_mass = particle_mass > 0 ? std::llround(*mass / particle_mass) : 0;
-  scene.feed.particle_count = feed.integer({"particle_count", "particles to fill in", "from mass_kg"}, 1,
-                                           std::numeric_limits<std::int32_t>::max(), from_mass);
+  const double wanted = particle_mass_kg > 0 ? *mass / particle_mass_kg : 0;
+  if (wanted > static_cast<double>(most)) {
+    feed.problem("mass_kg", fmt::format("makes {:.3g} particles, more than {}; give less", wanted, most));
+    return;
+  }
+  const std::int64_t from_mass = std::llround(wanted);
+  scene.feed.particle_count = feed.integer(count_key, 1, most, std::max<std::int64_t>(1, from_mass));
   if (std::abs(static_cast<double>(scene.feed.particle_count - from_mass)) >
       redundancy_tolerance * static_cast<double>(from_mass))
     feed.problem("particle_count",
                  fmt::format("mass_kg gives {} particles; leave one of the two out", from_mass));
 }
 
+/// Poured from the start at rate_1_s or rate_kg_s; a batch (refill = false) with a mass flow likewise.
+void read_hopper_rate(TomlTable& feed, Scene& scene, double particle_mass_kg) {
+  FeedSettings& out = scene.feed;
+  const NumberRule per_second{.unit = "1/s", .min = 0, .min_exclusive = true},
+      mass_per_second{.unit = "kg/s", .min = 0, .min_exclusive = true};
+  out.refill = feed.boolean({"refill", "what left comes back cold at the top; false: one batch"}, true);
+  out.mass_flow_kg_s = feed.number(
+      {"mass_flow_kg_s", "refill at most this fast; with refill = false the batch is poured at this rate",
+       "no limit"},
+      mass_per_second, 0.0);
+  const auto number =
+      feed.optional_number({"rate_1_s", "particles poured per second, from the start"}, per_second);
+  const auto mass =
+      feed.optional_number({"rate_kg_s", "mass poured per second, from the start"}, mass_per_second);
+  if (number.has_value() + mass.has_value() + feed.has("mass_flow_kg_s") > 1)
+    feed.problem(
+        mass ? "rate_kg_s" : "rate_1_s",
+        "only one of rate_1_s, rate_kg_s and mass_flow_kg_s says how fast particles come; leave the others out");
+  const double kg_s = mass ? *mass : out.refill ? 0 : out.mass_flow_kg_s;
+  out.rate_1_s = number ? *number : particle_mass_kg > 0 ? kg_s / particle_mass_kg : 0;
+  if (out.rate_1_s > 0) out.mass_flow_kg_s = 0;
+}
+
 void read_hopper(TomlTable& feed, Scene& scene) {
-  read_hopper_count(feed, scene);
+  const double d = scene.particle_diameter_m;
+  const double particle_mass_kg = pi / 6 * d * d * d * scene.materials[0].density_kg_m3;
+  read_hopper_rate(feed, scene, particle_mass_kg);
+  read_hopper_count(feed, scene, particle_mass_kg);
   TomlTable fill = feed.table({"fill_region", "Where a hopper is filled"});
   FeedSettings& out = scene.feed;
   out.fill_region.min = fill.vec3({"min_m", "lower corner"}, {.unit = "m"});
   out.fill_region.max = fill.vec3({"max_m", "upper corner"}, {.unit = "m"});
   const Vec3 size = out.fill_region.size();
-  const double d = scene.particle_diameter_m;
   if (fill.has("min_m") && fill.has("max_m") && !(size.x >= d && size.y >= d && size.z >= d))
     fill.problem("max_m",
                  "the fill region must hold a particle: max_m - min_m >= the diameter in every direction");
-  out.refill = feed.boolean({"refill", "particles that leave enter again at the top"}, true);
-  out.mass_flow_kg_s =
-      feed.number({"mass_flow_kg_s", "mass that enters per time; a hopper without it fills at once",
-                   "follows from the two others, or 0"},
-                  {.unit = "kg/s", .min = 0, .min_exclusive = true}, 0.0);
   out.velocity_m_s =
       feed.number({"velocity_m_s", "speed at which particles enter", "follows from the two others, or 0"},
                   {.unit = "m/s", .min = 0}, 0.0);

@@ -5,6 +5,9 @@ namespace granrad {
 
 /// Pieces of read_scene; each reads its tables of the scene into `scene` and records problems in them.
 
+/// [[remove]]. Precondition: dem.engine is read.
+void read_removals(TomlTable root, Scene& scene);
+
 /// [box], [walls.*], [[polygon]], [[mesh]] and [region]. Preconditions: materials and feed.kind are read;
 /// `roles_required`: every wall must choose its role because radiation is on.
 void read_geometry(TomlTable root, Scene& scene, bool roles_required);

@@ -11,6 +11,7 @@
 
 #include "coupling/heat/contact_conductance.h"
 #include "coupling/heat/gas_lens.h"
+#include "coupling/heat/heat_parts.h"
 #include "coupling/heat/heat_step.h"
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
@@ -199,6 +200,22 @@ TEST(Conduction, RefusesAStepBeyondTheLimitAndNamesIt) {
   } catch (const NumericalError& e) {
     EXPECT_NE(std::string(e.what()).find("largest allowed"), std::string::npos) << e.what();
   }
+}
+
+// Two equal spheres meet at the mean: T1 - T2 = D exp(-2 t G / (m c)). A step of 20 limits is 20 parts of it, each of
+// first order: (1 - 2 0.1)^20 of D is left, never less than none.
+// Planted: one part, which is refused; the heats of the last part alone, which leave the books open.
+TEST(Conduction, LongStepsAreDoneInPartsThatNeverOvershoot) {
+  Bed bed = pair_at(7.95e-4);
+  bed.temperature_K = {900, 300};
+  const auto g = conductances(bed, touching(7.95e-4), {});
+  const double limit = conduction_step_limit_s(bed, g);
+  const double energy = thermal_energy_J(bed);
+  std::vector<HeatPaths> from_walls_J;
+  advance_in_parts(bed, g, 20 * limit * (1 - 1e-9), from_walls_J);
+  EXPECT_NEAR((bed.temperature_K[0] - bed.temperature_K[1]) / 600, std::pow(1 - 2 * 0.1, 20), 1e-9);
+  EXPECT_NEAR(thermal_energy_J(bed) / energy, 1, 1e-14);
+  EXPECT_THROW(advance_in_parts(bed, g, 1e6 * limit, from_walls_J), NumericalError);
 }
 
 TEST(Conduction, RefusesMaterialsItCannotUse) {

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <random>
 #include <thread>
 
 #include "coupling/simulation/history.h"
@@ -65,7 +66,7 @@ TEST(GranrunRun, SameBitsForAnyNumberOfThreads) {
 
 // Catches state missing from the checkpoint: planted, the state of the feed, the number of the radiation
 // update and the totals at the last row each failed this or one of the two tests below.
-TEST(GranrunRun, KilledAtRandomAndResumedEndsIdentically) {
+void kill_and_resume(const std::vector<double>& parts) {
   Scratch scratch;
   const auto scene =
       scratch.write("plug.toml", edited(small_plug, "end_time_s = 0.04", "end_time_s = 0.2")).string();
@@ -74,7 +75,7 @@ TEST(GranrunRun, KilledAtRandomAndResumedEndsIdentically) {
   ASSERT_EQ(granrun(scratch, "run " + scene + " -q -o " + whole.string()).code, 0);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   int kills = 0;
-  for (double part : {0.31, 0.17, 0.43}) {
+  for (double part : parts) {
     const pid_t child = start_granrun({"run", scene, "-q", "-o", broken.string(), "--resume"});
     std::this_thread::sleep_for(std::chrono::duration<double>(part * seconds));
     kill(child, SIGKILL);
@@ -85,6 +86,24 @@ TEST(GranrunRun, KilledAtRandomAndResumedEndsIdentically) {
   EXPECT_GE(kills, 1);
   ASSERT_EQ(granrun(scratch, "run " + scene + " -q -o " + broken.string() + " --resume").code, 0);
   expect_same_case(whole, broken);
+}
+
+TEST(GranrunRun, KilledAtRandomAndResumedEndsIdentically) {
+  kill_and_resume({0.31, 0.17, 0.43});
+}
+
+// Fifty moments, drawn anew each time the test runs: a sequence of kills, each after up to a tenth of the run.
+TEST(GranrunRun, LongKilledAtFiftyMomentsAndResumedEndsIdentically) {
+  std::random_device device;
+  const auto seed = device();
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> part(0.0, 0.1);
+  for (int repeat = 0; repeat < 5; ++repeat) {
+    std::vector<double> parts;
+    for (int k = 0; k < 10; ++k) parts.push_back(part(random));
+    kill_and_resume(parts);
+  }
 }
 
 TEST(GranrunRun, SignalsAndWallTimeSaveACheckpointThatResumes) {

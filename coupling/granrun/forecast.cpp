@@ -1,0 +1,136 @@
+#include "coupling/granrun/forecast.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "coupling/simulation/heat_model.h"
+#include "dem/base/constants.h"
+#include "dem/base/error.h"
+
+namespace granrad {
+
+namespace {
+
+constexpr double trial_s = 0.5;                 // for flow and conduction
+constexpr double usual_particle_steps_s = 4e6;  // of the flow on one core, settled or flowing beds
+constexpr double rays_of_a_trial = 5e5;
+constexpr std::size_t most_particles_tried = 20000;
+constexpr double bytes_per_particle = 700;  // columns, lists, contacts and conductances of a dense bed
+constexpr double frame_bytes_per_particle = 330;
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Mean number of particles over the run, of those there are now.
+double mean_count(const Case& c, const Bed& bed) {
+  const FeedSettings& feed = c.flow.feed;
+  const double now = static_cast<double>(bed.size());
+  if (feed.rate_1_s > 0) {
+    const double most = static_cast<double>(feed.particle_count) - now,
+                 comes = feed.rate_1_s * c.flow.end_time_s;
+    return now + (comes <= most ? comes / 2 : most * (1 - most / (2 * comes)));
+  }
+  if (feed.kind == FeedSettings::Kind::hopper)
+    return std::max(now, feed.refill ? static_cast<double>(feed.particle_count) : now);
+  if (feed.kind == FeedSettings::Kind::plug && now == 0)
+    return feed.solid_fraction * c.flow.box.volume() / sphere_volume(c.flow.particle_diameter_m / 2);
+  return now;
+}
+
+/// The radiation of the case with so few rays that one update takes about a second at most.
+Case with_few_rays(const Case& c, const Bed& bed, double& times_more) {
+  Case trial = c;
+  const bool paths = c.heat.radiation.kind == RadiationKind::paths;
+  const double rays = c.heat.radiation.rays * (paths ? 1 : static_cast<double>(bed.size()));
+  times_more = std::max(1.0, rays / rays_of_a_trial);
+  trial.heat.radiation.rays = std::max(paths ? 2000.0 : 20.0, c.heat.radiation.rays / times_more);
+  times_more = c.heat.radiation.rays > 0 ? c.heat.radiation.rays / trial.heat.radiation.rays : 1;
+  return trial;
+}
+
+double seconds_of_an_update(const Case& c, const Bed& bed, int threads) {
+  if (c.heat.radiation.kind == RadiationKind::none || bed.size() == 0) return 0;
+  double times_more = 1;
+  const Case trial = with_few_rays(c, bed, times_more);
+  HeatModel heat(trial, threads);
+  heat.start(bed);
+  const double start = now_s();
+  heat.draw_radiation(bed, 0);
+  return (now_s() - start) * times_more;
+}
+
+}  // namespace
+
+Forecast forecast(const Case& c, Simulation& simulation, int threads) {
+  Forecast cost;
+  const TimePlan plan = simulation.plan();
+  const Bed bed = simulation.bed();
+  const double ticks = static_cast<double>(plan.end_tick), count = mean_count(c, bed);
+  const bool moves = c.flow.engine != EngineKind::none;
+  if (plan.ticks_per_radiation > 0)
+    cost.radiation_s = seconds_of_an_update(c, bed, threads) *
+                       (moves ? ticks / static_cast<double>(plan.ticks_per_radiation) : 1) *
+                       (bed.size() > 0 ? count / static_cast<double>(bed.size()) : 1);
+  if (!moves && c.heat.radiation.kind == RadiationKind::paths)
+    cost.radiation_s *= ticks / static_cast<double>(std::max<std::int64_t>(1, plan.ticks_per_radiation));
+  const double expected_tick_s = static_cast<double>(bed.size()) *
+                                 static_cast<double>(moves ? plan.steps_per_tick : 1) /
+                                 usual_particle_steps_s;
+  if (bed.size() > 0 && expected_tick_s < 2 * trial_s) {
+    Case still = c;  // conduction and flow alone
+    still.heat.radiation.kind = RadiationKind::none;
+    Simulation trial(still, threads);
+    trial.start();
+    trial.advance();  // lists are made, threads started
+    const PartSeconds first = trial.seconds();
+    double done = 0;
+    for (const double start = now_s(); now_s() - start < trial_s && !trial.finished(); ++done)
+      trial.advance();
+    if (done == 0) return cost;
+    const double more =
+        ticks * plan.tick_s / (done * trial.plan().tick_s) * count / static_cast<double>(bed.size());
+    cost.flow_s = (trial.seconds().flow - first.flow) * more;
+    cost.conduction_s = (trial.seconds().conduction - first.conduction) * more;
+    cost.measured = true;
+  } else if (moves) {
+    cost.flow_s = count * ticks * static_cast<double>(plan.steps_per_tick) / usual_particle_steps_s;
+  }
+  cost.frames = std::ceil(ticks / static_cast<double>(plan.ticks_per_frame)) + 1;
+  cost.frame_bytes = 6e4 + frame_bytes_per_particle * count;
+  cost.output_s =
+      cost.frames * (0.01 + cost.frame_bytes / 1e8) + 0.002 * ticks / static_cast<double>(plan.ticks_per_row);
+  cost.memory_bytes = 6e7 + bytes_per_particle * count;
+  return cost;
+}
+
+std::vector<SourceCost> source_costs(const Case& c, const Bed& bed, int threads) {
+  std::vector<SourceCost> costs;
+  if (c.heat.radiation.kind == RadiationKind::none || bed.size() == 0 || bed.size() > most_particles_tried)
+    return costs;
+  constexpr double wanted = 0.01;
+  for (const auto& [kind, rays] : {std::pair{RadiationKind::paths, 20000.0},
+                                   {RadiationKind::embree, 100.0},
+                                   {RadiationKind::lines, 400.0}}) {
+    Case trial = c;
+    trial.heat.radiation.kind = kind;
+    trial.heat.radiation.rays = rays;
+    trial.heat.radiation.order = 0;
+    try {
+      HeatModel heat(trial, threads);
+      heat.start(bed);
+      const double start = now_s();
+      const auto drawn = heat.draw_radiation(bed, 0);
+      const double spent = now_s() - start, heat_W = std::abs(drawn.all.isothermal_wall_heat_W),
+                   error = drawn.all.isothermal_wall_heat_error_W;
+      if (heat_W > 0 && error > 0)
+        costs.push_back({to_string(kind), spent * std::pow(error / heat_W / wanted, 2)});
+    } catch (const Error&) {  // this source does not serve the bed
+    }
+  }
+  std::sort(costs.begin(), costs.end(), [](const auto& a, const auto& b) { return a.seconds < b.seconds; });
+  return costs;
+}
+
+}  // namespace granrad

@@ -1,0 +1,34 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coupling/simulation/simulation.h"
+
+namespace granrad {
+
+/// What a run will cost on this machine.
+struct Forecast {
+  double flow_s = 0, conduction_s = 0, radiation_s = 0,
+         output_s = 0;  ///< wall-clock seconds of the whole run
+  double frame_bytes = 0, frames = 0;
+  double memory_bytes = 0;
+  bool measured = false;  ///< false: the flow by a usual speed, because the bed is empty or too large to try
+  double total_s() const { return flow_s + conduction_s + radiation_s + output_s; }
+};
+
+/// Runs a few heat steps of the bed at time 0, about two seconds, and scales them to the run: flow and conduction with
+/// the mean number of particles a feed will bring, radiation with its rays (it is tried with few). Changes `simulation`.
+Forecast forecast(const Case& c, Simulation& simulation, int threads);
+
+/// What one source needs for heats of the walls with 1 % standard error, by one trial on a bed.
+struct SourceCost {
+  std::string source;
+  double seconds = 0;
+};
+
+/// Of every source that serves this bed and tells its error, cheapest first; none without radiating walls or for more
+/// than 20 000 particles.
+std::vector<SourceCost> source_costs(const Case& c, const Bed& bed, int threads);
+
+}  // namespace granrad

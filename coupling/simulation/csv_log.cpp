@@ -1,0 +1,85 @@
+#include "coupling/simulation/csv_log.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "coupling/simulation/case_inputs.h"
+#include "dem/base/error.h"
+#include "dem/base/text_file.h"
+
+namespace granrad {
+
+namespace {
+
+constexpr double same_time = 1e-9;  // relative: times are written with twelve digits
+
+/// The rows whose time is not after `time_s`, and the time of the last.
+std::string rows_up_to(const std::string& text, double time_s, std::size_t cells, double& reached_s) {
+  std::string kept;
+  std::size_t start = text.find('\n') + 1;
+  for (std::size_t end; (end = text.find('\n', start)) != std::string::npos; start = end + 1) {
+    const std::string line = text.substr(start, end - start);
+    const double row_s = std::strtod(line.c_str(), nullptr);
+    if (split_cells(line).size() != cells || row_s > time_s * (1 + same_time)) continue;
+    kept += line + "\n";
+    reached_s = row_s;
+  }
+  return kept;
+}
+
+}  // namespace
+
+CsvLog::CsvLog(const std::filesystem::path& file, const std::string& header, double last_row_s)
+    : file_(file) {
+  std::string rows;
+  double reached_s = 0;
+  if (last_row_s > 0 && std::filesystem::exists(file))
+    rows = rows_up_to(read_text_file(file), last_row_s, split_cells(header).size(), reached_s);
+  if (std::abs(reached_s - last_row_s) > same_time * last_row_s)
+    note_ = fmt::format("{}: its rows end at {:g} s, the run goes on at {:g} s: rows between are missing",
+                        file.string(), reached_s, last_row_s);
+  write_text_file(file, header + "\n" + rows);
+}
+
+void CsvLog::append(const std::string& rows) {
+  std::FILE* out = std::fopen(file_.c_str(), "ab");
+  if (!out) throw IoError(fmt::format("{}: cannot be written", file_.string()));
+  const bool written = std::fwrite(rows.data(), 1, rows.size(), out) == rows.size() &&
+                       std::fflush(out) == 0 && fsync(fileno(out)) == 0;
+  if (std::fclose(out) != 0 || !written) throw IoError(fmt::format("{}: cannot be written", file_.string()));
+}
+
+std::string cell(double value, int digits) {
+  return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "";
+}
+
+std::string text_cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::vector<std::string> split_cells(const std::string& line) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (std::size_t k = 0; k < line.size(); ++k) {
+    if (line[k] == '"') {
+      if (quoted && k + 1 < line.size() && line[k + 1] == '"')
+        cells.back() += line[k++];
+      else
+        quoted = !quoted;
+    } else if (line[k] == ',' && !quoted) {
+      cells.emplace_back();
+    } else {
+      cells.back() += line[k];
+    }
+  }
+  return cells;
+}
+
+}  // namespace granrad

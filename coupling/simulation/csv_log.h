@@ -1,0 +1,31 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace granrad {
+
+/// A table on disk that grows while a run goes on: comma-separated, its first column the time in s. Each row
+/// reaches the disk before the next is computed.
+class CsvLog {
+ public:
+  /// Starts a new file, or goes on after the rows up to `last_row_s` > 0 and drops later ones, and one cut short
+  /// by a crash. Throws IoError.
+  CsvLog(const std::filesystem::path& file, const std::string& header, double last_row_s);
+  void append(const std::string& rows);
+  /// What is wrong with the rows that were there: their last is not that of `last_row_s`. Empty when nothing is.
+  const std::string& note() const { return note_; }
+
+ private:
+  std::filesystem::path file_;
+  std::string note_;
+};
+
+/// A number as a cell: empty where there is no value, which pandas and spreadsheets read as missing.
+std::string cell(double value, int digits = 12);
+/// A text as a cell: in quotes where it must be (RFC 4180).
+std::string text_cell(const std::string& text);
+/// The cells of a line, quotes taken off.
+std::vector<std::string> split_cells(const std::string& line);
+
+}  // namespace granrad

@@ -1,0 +1,235 @@
+"""Random valid scenes, as plain data, and how they are written for granrun."""
+import copy
+import math
+import os
+import random
+
+FACES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
+SOURCES = ("none", "paths", "embree", "lines")
+ALUMINA = {"density_kg_m3": 3984.0, "specific_heat_J_kgK": 755.0, "conductivity_W_mK": 33.0,
+           "youngs_modulus_Pa": 5e6, "real_youngs_modulus_Pa": 414e9, "poisson_ratio": 0.23,
+           "restitution": 0.45, "friction": 0.4, "emissivity": 1.0}
+
+
+def toml(value):
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return '"%s"' % value
+    if isinstance(value, dict):
+        return "{" + ", ".join("%s = %s" % (k, toml(v)) for k, v in value.items()) + "}"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(toml(v) for v in value) + "]"
+    return repr(value)
+
+
+def corners(low, high, face):
+    """The four corners of a face of a box, its right-hand normal inwards."""
+    axis, upper = "xyz".index(face[0]), face.endswith("max")
+    a, b = [k for k in range(3) if k != axis]
+    square = [(0, 0), (1, 0), (1, 1), (0, 1)]
+    points = []
+    for i, j in square:
+        p = [0.0, 0.0, 0.0]
+        p[axis] = high[axis] if upper else low[axis]
+        p[a] = high[a] if i else low[a]
+        p[b] = high[b] if j else low[b]
+        points.append(p)
+    # (a, b) is right-handed about +axis for x and z, left-handed for y.
+    outwards = upper if axis != 1 else not upper
+    return points[::-1] if outwards else points
+
+
+def generate(seed):
+    """One scene; the same seed gives the same scene."""
+    r = random.Random(seed)
+    d = 10 ** r.uniform(-4, -2.3)
+    frozen = r.random() < 0.5
+    feed = "file" if frozen else r.choices(["file", "plug", "hopper"], [6, 2, 2])[0]
+    size = [d * r.uniform(2.5, 9) for _ in range(3)]
+    if feed == "plug":
+        size[2] = d * r.uniform(8, 16)
+    if feed == "hopper":
+        size[2] = d * r.uniform(12, 20)
+    low = [0.0] * 3 if r.random() < 0.6 else [r.uniform(-1, 1) for _ in range(3)]
+    source = r.choices(SOURCES, [2, 5, 2, 2])[0]
+    periodic = [a for a in ("xyz" if feed == "file" else "xy") if r.random() < 0.2]
+    isothermal = r.random() < 0.15
+    first_K = r.choice([300.0, r.uniform(200, 1500)])
+    scene = {"seed": seed, "frozen": frozen, "diameter": d, "low": low, "size": size, "periodic": periodic,
+             "isothermal": isothermal, "particle_K": first_K, "source": source, "feed": None, "wall_style": "box",
+             "gravity": [0.0, 0.0, 0.0], "materials": [dict(ALUMINA)], "gas": None, "particles": [], "remove": []}
+    material(r, scene)
+    walls(r, scene)
+    if feed == "file":
+        particles(r, scene)
+    else:
+        scene["feed"] = inflow(r, scene, feed)
+    if not frozen and feed != "plug":
+        scene["gravity"] = r.choice([[0.0, 0.0, 0.0], [0.0, 0.0, -9.81], [1.0, -2.0, -9.0]])
+    if r.random() < 0.5:
+        scene["gas"] = r.choice([{}, {"conductivity_W_mK": r.uniform(.01, .5), "lens_radius_ratio": r.uniform(1.05, 1.9),
+                                      "minimum_gap_m": 10 ** r.uniform(-9, -7)}])
+    every = 10 ** r.uniform(-3.6, -2) if frozen else 10 ** r.uniform(-4, -3)
+    scene["every"], scene["rows"] = every, r.randrange(3, 9)
+    scene["conduction"] = {"solid": r.random() < 0.8, "modulus_exponent": r.choice([0.2, 1 / 3])}
+    scene["rays"] = {"none": 0, "paths": r.choice([2000, 20000]), "embree": 400, "lines": 2000}[source]
+    scene["ray_seed"] = r.randrange(1000)
+    if not scene["gas"] and not scene["conduction"]["solid"] and source == "none" and frozen:
+        scene["conduction"]["solid"] = True
+    return scene
+
+
+def material(r, scene):
+    m = scene["materials"][0]
+    m["emissivity"] = r.choice([1.0, 1.0, r.uniform(.05, 1), 0.1])
+    m["restitution"] = r.choice([.45, .1, 1.0, r.uniform(.1, 1)])
+    m["friction"] = r.choice([0.0, 0.4, r.random()])
+    m["conductivity_W_mK"] = r.choice([33.0, 0.2, 400.0])
+    if r.random() < 0.3:
+        second = dict(m, name="second", density_kg_m3=r.choice([1000.0, 8000.0]), emissivity=r.uniform(.05, 1),
+                      youngs_modulus_Pa=r.choice([1e6, 5e7]), specific_heat_J_kgK=r.uniform(100, 2000))
+        scene["materials"].append(second)
+
+
+def walls(r, scene):
+    scene["walls"] = {}
+    for face in FACES:
+        if face[0] in scene["periodic"]:
+            continue
+        role = r.choice(["isothermal", "adiabatic", "open"] if scene["source"] != "none" else ["isothermal", "adiabatic"])
+        wall = {"role": role}
+        if role != "adiabatic":
+            wall["temperature_K"] = scene["particle_K"] if scene["isothermal"] else r.choice([1000.0, r.uniform(100, 2000)])
+        if role != "open" and r.random() < 0.5:
+            wall["emissivity"] = r.choice([1.0, .1, r.uniform(.05, 1)])
+        scene["walls"][face] = wall
+
+
+def particles(r, scene):
+    d, low, size = scene["diameter"], scene["low"], scene["size"]
+    ratio = r.choice([1, 1, 1.5, 3])
+    wanted = r.choice([1, 2, 3, 8, 20, 40, 60])
+    placed = []
+    for _ in range(4000):
+        if len(placed) == wanted:
+            break
+        radius = d / 2 * ratio ** r.uniform(-1, 0)
+        place = [r.uniform(low[k] + (0 if "xyz"[k] in scene["periodic"] else radius),
+                           low[k] + size[k] - (0 if "xyz"[k] in scene["periodic"] else radius)) for k in range(3)]
+        if any(distance(scene, place, p["place"]) < (radius + p["radius"]) * 0.9995 for p in placed):
+            continue
+        placed.append({"place": place, "radius": radius, "material": r.randrange(len(scene["materials"])),
+                       "T": scene["particle_K"] if scene["isothermal"] else r.choice([scene["particle_K"], r.uniform(250, 1500)]),
+                       "v": [r.gauss(0, .02) for _ in range(3)] if not scene["frozen"] and r.random() < .5 else [0.0] * 3})
+    scene["particles"] = placed
+
+
+def distance(scene, a, b):
+    total = 0
+    for k, axis in enumerate("xyz"):
+        apart = a[k] - b[k]
+        if axis in scene["periodic"]:
+            apart = math.remainder(apart, scene["size"][k])
+        total += apart * apart
+    return math.sqrt(total)
+
+
+def inflow(r, scene, kind):
+    d, low, size = scene["diameter"], scene["low"], scene["size"]
+    if kind == "plug":
+        for face in ("z_min", "z_max"):
+            scene["walls"][face]["contact"] = False
+        return {"kind": "plug", "solid_fraction": r.uniform(.02, .45), "velocity_m_s": 10 ** r.uniform(-2, 0),
+                "seed": r.randrange(1000), "start_filled": r.random() < 0.7}
+    for face in ("z_min", "z_max"):
+        scene["walls"][face]["contact"] = False
+    feed = {"kind": "hopper", "particle_count": r.choice([1, 5, 30, 60]), "velocity_m_s": r.uniform(0, .5),
+            "remove_below_m": low[2] - d * r.choice([1, 3]), "seed": r.randrange(100), "refill": r.random() < .7,
+            "fill_region": {"min_m": [low[0], low[1], low[2] + size[2] / 2], "max_m": [low[k] + size[k] for k in range(3)]}}
+    if r.random() < 0.4:
+        feed["rate_1_s"] = 10 ** r.uniform(2, 4)
+    return feed
+
+
+def write(scene, folder):
+    """scene.toml and the files it names."""
+    os.makedirs(folder, exist_ok=True)
+    lines = []
+
+    def table(name, values):
+        lines.append(name)
+        lines.extend("%s = %s" % (k, toml(v)) for k, v in values.items())
+        lines.append("")
+
+    table("[scene]", {"name": "judge %s" % scene["seed"], "end_time_s": scene["every"] * scene["rows"],
+                      "gravity_m_s2": scene["gravity"]})
+    table("[material]", scene["materials"][0])
+    for extra in scene["materials"][1:]:
+        table("[[materials]]", extra)
+    if scene["gas"] is not None:
+        table("[gas]", scene["gas"])
+    if scene["feed"]:
+        table("[particles]", {"diameter_m": scene["diameter"], "temperature_K": scene["particle_K"]})
+        table("[feed]", scene["feed"])
+    else:
+        table("[particles]", {"file": "bed.csv", "temperature_K": scene["particle_K"]})
+        bed(scene, os.path.join(folder, "bed.csv"))
+    box = {"size_m": scene["size"], "origin_m": scene["low"]}
+    if scene["periodic"]:
+        box["periodic"] = scene["periodic"]
+    if scene["wall_style"] != "box":
+        box["walls"] = False
+    table("[box]", box)
+    walls_of(scene, folder, table)
+    table("[dem]", {"engine": "none" if scene["frozen"] else "native"})
+    table("[conduction]", scene["conduction"])
+    if scene["source"] != "none":
+        table("[radiation]", {"source": scene["source"], "rays": scene["rays"], "every_s": scene["every"],
+                              "seed": scene["ray_seed"]})
+    table("[output]", {"every_s": scene["every"], "frames_every_s": scene["every"] * scene["rows"]})
+    path = os.path.join(folder, "scene.toml")
+    with open(path, "w") as out:
+        out.write("\n".join(lines))
+    return path
+
+
+def bed(scene, path):
+    with open(path, "w") as out:
+        out.write("x,y,z,radius,temperature,vx,vy,vz,material\n")
+        for p in scene["particles"]:
+            out.write(",".join(repr(float(v)) for v in p["place"] + [p["radius"], p["T"]] + p["v"]) + ",%d\n" % p["material"])
+
+
+def walls_of(scene, folder, table):
+    high = [l + s for l, s in zip(scene["low"], scene["size"])]
+    order = list(scene["walls"])
+    if scene.get("reordered"):
+        order.reverse()
+    for face in order:
+        wall = scene["walls"][face]
+        if scene["wall_style"] == "box":
+            table("[walls.%s]" % face, wall)
+        elif scene["wall_style"] == "polygons":
+            table("[[polygon]]", dict(wall, name=face, vertices_m=corners(scene["low"], high, face)))
+        elif scene["wall_style"] == "halves":
+            a, b, c, e = corners(scene["low"], high, face)
+            ab, ce = [(x + y) / 2 for x, y in zip(a, b)], [(x + y) / 2 for x, y in zip(c, e)]
+            table("[[polygon]]", dict(wall, name=face, vertices_m=[a, ab, ce, e]))
+            table("[[polygon]]", dict(wall, name=face + "_2", vertices_m=[ab, b, c, ce]))
+        else:
+            name = face + ".stl"
+            a, b, c, e = corners(scene["low"], high, face)
+            with open(os.path.join(folder, name), "w") as out:
+                out.write("solid %s\n" % face)
+                for t in ((a, b, c), (a, c, e)):
+                    out.write("facet normal 0 0 0\nouter loop\n" + "".join("vertex %r %r %r\n" % tuple(p) for p in t) +
+                              "endloop\nendfacet\n")
+                out.write("endsolid %s\n" % face)
+            table("[[mesh]]", dict(wall, name=face, file=name))
+
+
+def changed(scene, **values):
+    other = copy.deepcopy(scene)
+    other.update(values)
+    return other

@@ -1,0 +1,104 @@
+"""The same physics written in another way: each gives a scene and what its heats must be multiplied by.
+
+A variant is (name, scene, factor of heats, map of wall names, order of particles by the first scene's)."""
+import copy
+
+from scenes import FACES, changed
+
+
+def same_walls():
+    return {face: face for face in FACES}
+
+
+def moved(scene):
+    other = copy.deepcopy(scene)
+    shift = [0.125, -0.25, 0.5]
+    other["low"] = [a + b for a, b in zip(scene["low"], shift)]
+    for p in other["particles"]:
+        p["place"] = [a + b for a, b in zip(p["place"], shift)]
+    return "moved", other, 1, same_walls()
+
+
+def mirrored(scene):
+    other = copy.deepcopy(scene)
+    for p in other["particles"]:
+        p["place"][0] = 2 * scene["low"][0] + scene["size"][0] - p["place"][0]
+    walls = same_walls()
+    walls["x_min"], walls["x_max"] = "x_max", "x_min"
+    other["walls"] = {walls[face]: wall for face, wall in scene["walls"].items()}
+    return "mirrored", other, 1, walls
+
+
+def turned(scene):
+    """By 90 degrees about (1, 1, 1): x to y to z to x."""
+    other = copy.deepcopy(scene)
+    turn = lambda v: [v[2], v[0], v[1]]
+    other["low"], other["size"] = turn(scene["low"]), turn(scene["size"])
+    for p in other["particles"]:
+        p["place"] = turn(p["place"])
+    follows = {"x": "y", "y": "z", "z": "x"}
+    walls = {face: follows[face[0]] + face[1:] for face in FACES}
+    other["walls"] = {walls[face]: wall for face, wall in scene["walls"].items()}
+    other["periodic"] = [follows[a] for a in scene["periodic"]]
+    return "turned", other, 1, walls
+
+
+def larger(scene):
+    """Ten times in length, with c / 10 and k x 10: every heat is 100 times, every temperature the same."""
+    other = copy.deepcopy(scene)
+    for key in ("low", "size"):
+        other[key] = [10 * v for v in scene[key]]
+    other["diameter"] *= 10
+    for p in other["particles"]:
+        p["place"], p["radius"] = [10 * v for v in p["place"]], 10 * p["radius"]
+    for m in other["materials"]:
+        m["specific_heat_J_kgK"] /= 10
+        m["conductivity_W_mK"] *= 10
+    if other["gas"] is not None:
+        other["gas"] = dict(other["gas"], conductivity_W_mK=10 * other["gas"].get("conductivity_W_mK", 0.026),
+                            minimum_gap_m=10 * other["gas"].get("minimum_gap_m", 2.75e-8))
+    return "larger", other, 100, same_walls()
+
+
+def doubled(scene):
+    """Two periods instead of one along the first periodic axis."""
+    axis = "xyz".index(scene["periodic"][0])
+    other = copy.deepcopy(scene)
+    other["size"][axis] *= 2
+    for p in copy.deepcopy(scene["particles"]):
+        p["place"][axis] += scene["size"][axis]
+        other["particles"].append(p)
+    other["rays"] = scene["rays"] * (2 if scene["source"] == "paths" else 1)
+    return "doubled", other, 2, same_walls()
+
+
+def as_walls(style):
+    def variant(scene):
+        return style, changed(scene, wall_style=style), 1, same_walls()
+    return variant
+
+
+def reordered(scene):
+    return "reordered", changed(scene, wall_style="polygons", reordered=True), 1, same_walls()
+
+
+def by(source, rays):
+    def variant(scene):
+        return source, changed(scene, source=source, rays=rays), 1, same_walls()
+    return variant
+
+
+def variants(scene):
+    """Those that this scene allows. Moving beds are chaotic: only frozen ones have the same heats."""
+    if not scene["frozen"] or scene["feed"] or not scene["particles"]:
+        return []
+    all_of_them = [moved, mirrored, turned, larger]
+    if scene["periodic"]:
+        all_of_them.append(doubled)
+    else:
+        all_of_them += [as_walls("polygons"), reordered, as_walls("halves")]
+        if scene["source"] != "lines":
+            all_of_them.append(as_walls("meshes"))
+    if scene["source"] != "none":
+        all_of_them += [by(s, n) for s, n in (("paths", 20000), ("embree", 1000), ("lines", 4000)) if s != scene["source"]]
+    return [make(scene) for make in all_of_them]
