@@ -194,6 +194,7 @@ void TomlDocument::override_value(std::string_view text) {
     try {
       return merge(*into, toml::parse(fmt::format("{}={}", key, written), name));
     } catch (const toml::parse_error&) {
+    } catch (const TomlSurprise&) {
     }
   }
   state_->add(here, "", "cannot be read as key=value");

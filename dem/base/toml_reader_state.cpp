@@ -35,9 +35,30 @@ Place place_of(const toml::source_region& source, const std::string& fallback_fi
   return {source.path ? *source.path : fallback_file, source.begin.line, source.begin.column};
 }
 
+namespace {
+
+/// The first line up to which the text surprises toml++.
+std::size_t line_of_surprise(std::string_view text) {
+  std::size_t line = 1;
+  for (auto end = text.find('\n'); end != text.npos; end = text.find('\n', end + 1), ++line) {
+    try {
+      static_cast<void>(toml::parse(text.substr(0, end)));
+    } catch (const TomlSurprise&) {
+      break;
+    } catch (const toml::parse_error&) {
+    }
+  }
+  return line;
+}
+
+}  // namespace
+
 toml::table parse_toml(std::string_view text, const std::string& name) {
   try {
     return toml::parse(text, name);
+  } catch (const TomlSurprise&) {
+    throw InputError(advised(fmt::format("{}:{}:1: is not TOML", name, line_of_surprise(text)),
+                             "a key is one word, or text in quotes"));
   } catch (const toml::parse_error& error) {
     throw InputError(fmt::format("{}:{}:{}: {}", name, error.source().begin.line, error.source().begin.column,
                                  error.description()));

@@ -1,10 +1,27 @@
 #pragma once
 // The inside of toml_reader.h, for its own .cpp files alone.
-#include <toml++/toml.h>
-
 #include <filesystem>
 #include <map>
 #include <set>
+#include <stdexcept>
+
+namespace granrad {
+/// Thrown where toml++ finds text it took to be impossible.
+struct TomlSurprise : std::logic_error {
+  using std::logic_error::logic_error;
+};
+[[noreturn]] inline void surprise(const char* what) {
+  throw TomlSurprise(what);
+}
+}  // namespace granrad
+
+// Some malformed keys end in an assertion of toml++ 3.3 (and in undefined behaviour where assertions are off): here they
+// are exceptions, in every kind of build.
+#pragma push_macro("NDEBUG")
+#undef NDEBUG
+#define TOML_ASSERT(expr) ((expr) ? static_cast<void>(0) : granrad::surprise(#expr))
+#include <toml++/toml.h>
+#pragma pop_macro("NDEBUG")
 
 #include "dem/base/keys/exploration.h"
 #include "dem/base/problem_list.h"

@@ -21,7 +21,9 @@ using Triangle = std::array<std::int32_t, 3>;
 /// Points by place: those within the tolerance of an earlier one are that one.
 class Welder {
  public:
-  explicit Welder(double tolerance) : tolerance_(std::max(tolerance, 1e-300)) {}
+  /// `origin`: near all points, so that cells are numbered from there.
+  Welder(double tolerance, const Vec3& origin)
+      : tolerance_(tolerance), cell_m_(tolerance > 0 ? tolerance : 1), origin_(origin) {}
 
   std::int32_t index_of(const Vec3& p, std::size_t& welded) {
     const auto home = cell_of(p);
@@ -49,7 +51,8 @@ class Welder {
   Cell cell_of(const Vec3& p) const {
     Cell cell{};
     for (int axis = 0; axis < 3; ++axis)
-      cell[static_cast<std::size_t>(axis)] = static_cast<std::int64_t>(std::floor(p[axis] / tolerance_));
+      cell[static_cast<std::size_t>(axis)] =
+          static_cast<std::int64_t>(std::floor((p[axis] - origin_[axis]) / cell_m_));
     return cell;
   }
   static std::uint64_t key(const Cell& c) {
@@ -67,7 +70,8 @@ class Welder {
         }
   }
 
-  double tolerance_;
+  double tolerance_, cell_m_;
+  Vec3 origin_;
   std::unordered_map<std::uint64_t, std::vector<std::int32_t>> cells_;
 };
 
@@ -86,8 +90,8 @@ double off_edge(const Vec3& p, const Vec3& a, const Vec3& b) {
 
 class Mender {
  public:
-  Mender(double tolerance, MeshMending& mending)
-      : tolerance_(tolerance), mending_(mending), welder_(tolerance) {}
+  Mender(double tolerance, const Vec3& origin, MeshMending& mending)
+      : tolerance_(tolerance), mending_(mending), welder_(tolerance, origin) {}
 
   std::vector<Triangle> take(const Facets& mesh) {
     std::vector<Triangle> triangles;
@@ -225,7 +229,7 @@ std::vector<Wall> mended(const std::vector<Facets>& meshes, double scale, const 
   if (!std::isfinite(tolerance) || !std::isfinite(tolerance * scale))
     throw InputError(fmt::format("{}: its vertices are too far apart to be computed with", file));
   mending.tolerance_m = scale * tolerance;
-  Mender mender(tolerance, mending);
+  Mender mender(tolerance, around.min, mending);
   std::vector<std::vector<Triangle>> kept;
   for (const Facets& mesh : meshes) kept.push_back(mender.take(mesh));
   mender.cut_at_vertices(kept);
