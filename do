@@ -9,7 +9,7 @@ build=$root/build/release
 packages=(build-essential cmake ninja-build git python3
   libembree-dev libeigen3-dev libceres-dev libhdf5-dev libgtest-dev
   libcli11-dev libtomlplusplus-dev libfmt-dev nlohmann-json3-dev
-  libudunits2-dev librandom123-dev libboost-math-dev zlib1g-dev libpugixml-dev)
+  libpng-dev libudunits2-dev librandom123-dev libboost-math-dev zlib1g-dev libpugixml-dev)
 
 # The engine on LIGGGHTS: optional in a build, part of the tests.
 liggghts_engine=(libliggghts-dev libopenmpi-dev)
@@ -19,7 +19,7 @@ test_tools=(hdf5-tools)
 
 # Python package and its tests; pages in a browser; documents; films.
 python=(python3-dev pybind11-dev python3-numpy python3-scipy python3-h5py python3-pytest python3-pandas python3-jsonschema)
-pages=(chromium)
+pages=(chromium ffmpeg)
 documents=(mkdocs help2man)
 packaging=(dpkg-dev file)
 

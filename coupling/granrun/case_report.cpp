@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "coupling/granrun/profiles.h"
+#include "coupling/granrun/render.h"
 #include "coupling/granrun/results.h"
 #include "coupling/granrun/run_record.h"
 #include "coupling/simulation/case_folder.h"
@@ -101,41 +102,12 @@ void add_profile(HtmlReport& page, const std::vector<Bed>& beds, const char* nam
   chart("Downward velocity", "v, m/s", p.velocity_m_s);
 }
 
-constexpr std::size_t most_outlines = 4000;  ///< of triangles, more would hide the bed
-
-std::vector<std::vector<Vec3>> outlines(const Bed& bed) {
-  std::vector<std::vector<Vec3>> all;
-  for (const Wall& wall : bed.walls) {
-    if (wall.triangles.empty()) all.push_back(wall.vertices);
-    if (all.size() + wall.triangles.size() > most_outlines) continue;
-    for (const auto& t : wall.triangles)
-      all.push_back({wall.vertices[t[0]], wall.vertices[t[1]], wall.vertices[t[2]]});
-  }
-  return all;
-}
-
-BedPicture picture(const Bed& bed) {
-  BedPicture shown{.position_m = bed.position_m,
-                   .radius_m = bed.radius_m,
-                   .columns = {{"T, K", bed.temperature_K}},
-                   .walls = outlines(bed),
-                   .low = bed.box.min,
-                   .high = bed.box.max};
-  const auto received = [](double q) { return q != 0; };
-  if (std::any_of(bed.radiative_heat_W.begin(), bed.radiative_heat_W.end(), received)) {
-    std::vector<double> flux(bed.size());
-    for (std::size_t i = 0; i < bed.size(); ++i)
-      flux[i] = bed.radiative_heat_W[i] / (4 * pi * bed.radius_m[i] * bed.radius_m[i]);
-    shown.columns.emplace_back("radiative flux received, W/m²", std::move(flux));
-  }
-  return shown;
-}
-
 void add_bed(HtmlReport& page, const CaseFolder& folder) {
   const auto frames = folder.frames();
   if (frames.empty()) return;
   const Bed bed = read_frame(frames.back().file).bed;
-  if (bed.size() > 0) page.bed(fmt::format("{} particles at {:g} s", bed.size(), bed.time_s), picture(bed));
+  if (bed.size() > 0)
+    page.bed(fmt::format("{} particles at {:g} s", bed.size(), bed.time_s), bed_picture(bed));
 }
 
 void add_profiles(HtmlReport& page, const CaseFolder& folder) {

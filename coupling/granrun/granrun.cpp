@@ -10,6 +10,7 @@
 #include "coupling/granrun/export.h"
 #include "coupling/granrun/keys.h"
 #include "coupling/granrun/new_scene.h"
+#include "coupling/granrun/render.h"
 #include "coupling/granrun/run.h"
 #include "coupling/granrun/sweep.h"
 #include "coupling/granrun/validate.h"
@@ -107,6 +108,16 @@ void add_check(CLI::App& app, Arguments& a, Body& body) {
   });
 }
 
+void add_render(CLI::App& app, Arguments& a, Body& body) {
+  auto* render = app.add_subcommand("render", "a picture or a film of a case, without a screen");
+  render->add_option("DIR", a.folder, "folder of a case")->required();
+  const auto file = std::make_shared<std::string>();
+  render->add_option("-o,--output", *file, "picture.png (the last frame) or film.mp4 (all frames)")
+      ->required();
+  add_common(render, a);
+  render->callback([&, file] { body = [&, file] { return render_case(a.folder, *file, a.options); }; });
+}
+
 void add_new(CLI::App& app, Body& body) {
   auto* starter = app.add_subcommand("new", "copy an example scene with what it needs");
   const auto file = std::make_shared<std::string>(), example = std::make_shared<std::string>();
@@ -179,7 +190,8 @@ int granrun(int argc, char** argv) {
       "(checkpoint saved). SIGUSR1 saves a checkpoint and the run goes on.");
   Arguments a;
   Body body;
-  for (auto* add : {add_run, add_check, add_validate, add_sweep, add_report, add_export}) add(app, a, body);
+  for (auto* add : {add_run, add_check, add_validate, add_sweep, add_report, add_export, add_render})
+    add(app, a, body);
   add_new(app, body);
   add_keys(app, body);
   try {

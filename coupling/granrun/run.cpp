@@ -14,6 +14,8 @@
 #include "coupling/simulation/simulation.h"
 #include "dem/base/error.h"
 #include "dem/base/program.h"
+#include "dem/base/text_file.h"
+#include "dem/io/export_text.h"
 
 namespace granrad {
 
@@ -151,6 +153,7 @@ int run_case(const Case& c, const std::filesystem::path& where, const RunOptions
   if (!lock) lock.emplace(where);
   const CaseFolder folder = CaseFolder::prepare(where, c, options.resume);
   write_run_record(folder, c, simulation, options);
+  write_text_file(folder.root() / "walls.vtp", walls_vtp_text(simulation.bed()));
   if (const int stop = follow(simulation, c, folder, options, start)) {
     write_run_record(folder, c, simulation, options);
     return stop;

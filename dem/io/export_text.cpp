@@ -148,4 +148,44 @@ std::string vtp_text(const Bed& given) {
   return fmt::to_string(text);
 }
 
+std::string walls_vtp_text(const Bed& bed) {
+  std::string points, connectivity, offsets, wall_number, temperature, emissivity, role;
+  std::size_t point_count = 0, cell_count = 0, ends = 0;
+  for (std::size_t w = 0; w < bed.walls.size(); ++w) {
+    const Wall& wall = bed.walls[w];
+    const auto cell = [&](const auto& corners) {
+      for (const auto corner : corners)
+        connectivity += fmt::format("{} ", point_count + static_cast<std::size_t>(corner));
+      ends += corners.size();
+      ++cell_count;
+      offsets += fmt::format("{} ", ends);
+      wall_number += fmt::format("{} ", w);
+      temperature += fmt::format("{} ", wall.temperature_K);
+      emissivity += fmt::format("{} ", wall.emissivity);
+      role += fmt::format("{} ", static_cast<int>(wall.role));
+    };
+    if (wall.triangles.empty()) {
+      std::vector<std::size_t> all(wall.vertices.size());
+      for (std::size_t k = 0; k < all.size(); ++k) all[k] = k;
+      cell(all);
+    }
+    for (const auto& triangle : wall.triangles) cell(triangle);
+    for (const Vec3& v : wall.vertices) points += fmt::format("{} {} {}\n", v.x, v.y, v.z);
+    point_count += wall.vertices.size();
+  }
+  const auto array = [](const char* type, const char* name, const std::string& values) {
+    return fmt::format("<DataArray type=\"{}\" Name=\"{}\" format=\"ascii\">{}</DataArray>\n", type, name,
+                       values);
+  };
+  return fmt::format(
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\">\n<PolyData>\n"
+      "<Piece NumberOfPoints=\"{}\" NumberOfPolys=\"{}\">\n<Points><DataArray type=\"Float64\" Name=\"Points\" "
+      "NumberOfComponents=\"3\" format=\"ascii\">\n{}</DataArray></Points>\n<Polys>\n{}{}</Polys>\n<CellData>\n{}{}{}{}"
+      "</CellData>\n</Piece>\n</PolyData>\n</VTKFile>\n",
+      point_count, cell_count, points, array("Int64", "connectivity", connectivity),
+      array("Int64", "offsets", offsets), array("Int32", "wall", wall_number),
+      array("Float64", "temperature", temperature), array("Float64", "emissivity", emissivity),
+      array("Int32", "role", role));
+}
+
 }  // namespace granrad

@@ -16,4 +16,8 @@ std::string vtp_text(const Bed& bed);
 /// Comma-separated, the names in the first line. No box.
 std::string csv_text(const Bed& bed);
 
+/// The walls as VTK PolyData (.vtp): one cell a polygon or triangle, with wall (its number), temperature (K), emissivity
+/// and role (0 isothermal, 1 adiabatic, 2 open, 3 excluded).
+std::string walls_vtp_text(const Bed& bed);
+
 }  // namespace granrad
