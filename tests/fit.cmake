@@ -1,5 +1,6 @@
 # tests of fit: granrad_test(shelf/name libraries...)
 granrad_test(unit/html_report granrad_page nlohmann_json::nlohmann_json)
+granrad_test(unit/bed_image granrad_page)
 granrad_test(unit/correlation granrad_correlation)
 granrad_test(unit/correlation_file granrad_correlation)
 granrad_test(unit/fit_correlation granrad_fit)
