@@ -7,7 +7,9 @@
 
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
+#include "dem/bed/solid_fraction.h"
 #include "dem/bed/wall_distance.h"
+#include "raytrace/facets.h"
 
 namespace granrad {
 
@@ -116,6 +118,17 @@ void clear_spheres(Enclosure& enclosure, double tolerance) {
   }
 }
 
+/// 0 where polygons do not tell: a mesh, or a region beyond the walls they close.
+double region_solid_fraction(const Bed& bed, const Enclosure& enclosure, const Box& region) {
+  Facets facets(0);
+  for (std::size_t w = 0; w < enclosure.walls.size(); ++w) {
+    if (!enclosure.walls[w].is_polygon()) return 0;
+    facets.add(enclosure.walls[w], static_cast<std::int32_t>(w), {}, 1);
+  }
+  const double least = facets.enclosed_volume(enclosure.periodic).value_or(bed.box.volume());
+  return region.volume() <= least * (1 + same_place) ? solid_fraction(bed, region) : 0;
+}
+
 }  // namespace
 
 std::vector<double> surface_areas(const Enclosure& enclosure) {
@@ -147,6 +160,7 @@ Enclosure make_enclosure(const Bed& bed, const Box& region) {
     enclosure.wall.push_back(static_cast<std::int32_t>(w));
   }
   refuse_spheres_behind_box_walls(bed, enclosure, tolerance);
+  enclosure.solid_fraction = region_solid_fraction(bed, enclosure, region);
   clear_spheres(enclosure, tolerance);
   return enclosure;
 }

@@ -19,6 +19,9 @@ struct Enclosure {
   std::array<bool, 3> periodic{};
   Box box;                           ///< periods, where periodic
   std::vector<std::int32_t> wall{};  ///< index in Bed::walls of each wall
+  /// Solid fraction of the region the enclosure was made for (dem/bed/solid_fraction.h), spheres across its
+  /// faces counted with the part inside; 0: not known (no region, or one that is larger than the walls).
+  double solid_fraction = 0;
 
   std::size_t sphere_count() const { return centre_m.size(); }
   std::size_t open_surface() const { return centre_m.size() + walls.size(); }

@@ -12,6 +12,7 @@
 #include "coupling/simulation/radiation_source.h"
 #include "coupling/simulation/simulation.h"
 #include "dem/base/error.h"
+#include "dem/bed/solid_fraction.h"
 
 namespace granrad {
 

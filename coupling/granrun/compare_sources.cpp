@@ -75,7 +75,7 @@ SourceTrack heat_frozen_bed(const Case& c, const Bed& bed, const RadiationSettin
 
   SourceTrack track;
   track.label = source_label(radiation);
-  track.rays = radiation.kind == RadiationKind::correlation ? 0 : radiation.rays;
+  track.rays = radiation.kind == RadiationKind::correlation && !radiation.traced_walls ? 0 : radiation.rays;
   for (double time : times_s) {
     while (simulation.bed().time_s < time * (1 - 1e-9) && !simulation.finished()) {
       simulation.advance();
@@ -104,7 +104,8 @@ std::string source_label(const RadiationSettings& settings) {
   std::string label = to_string(settings.kind);
   if (settings.order > 0) label += fmt::format(" order {}", settings.order);
   if (settings.kind == RadiationKind::correlation)
-    label = fmt::format("{} {}", label, settings.table.stem().string());
+    label = fmt::format("{} {}{}", label, settings.table.stem().string(),
+                        settings.traced_walls ? ", traced walls" : "");
   if (settings.closure == Closure::row_sum) label += " row_sum";
   return label;
 }

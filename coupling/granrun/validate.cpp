@@ -12,6 +12,7 @@
 #include "dem/base/error.h"
 #include "dem/base/program.h"
 #include "dem/base/text_file.h"
+#include "dem/bed/solid_fraction.h"
 #include "dem/io/snapshot.h"
 
 namespace granrad {

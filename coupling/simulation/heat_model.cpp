@@ -50,7 +50,7 @@ HeatModel::ParticleHeat HeatModel::draw_radiation(const Bed& bed, const std::vec
                                                   std::uint64_t draw) {
   const Enclosure enclosure = make_enclosure(bed, case_.flow.region);
   if (!source_) source_ = make_radiation_source(case_.heat.radiation, case_.flow, threads_);
-  const RadiativeState state = 
+  const RadiativeState state =
       radiative_state(bed, temperature_K, enclosure, surroundings_K(case_.flow));
   ParticleHeat result;
   result.all = source_->net_heat(enclosure, state, draw);
@@ -116,13 +116,6 @@ std::vector<char> in_region(const Bed& bed, const Box& region) {
   std::vector<char> inside(bed.size());
   for (std::size_t i = 0; i < bed.size(); ++i) inside[i] = region.contains(wrapped_into_box(bed, bed.position_m[i]));
   return inside;
-}
-
-double solid_fraction(const Bed& bed, const Box& region) {
-  double volume = 0;
-  for (std::size_t i = 0; i < bed.size(); ++i)
-    if (region.contains(bed.position_m[i])) volume += sphere_volume(bed.radius_m[i]);
-  return region.volume() > 0 ? volume / region.volume() : 0;
 }
 
 }  // namespace granrad

@@ -70,7 +70,5 @@ class HeatModel {
 
 /// 1 for the particles whose centre lies in `region`.
 std::vector<char> in_region(const Bed& bed, const Box& region);
-/// Volume of the particles whose centre lies in the region over its volume.
-double solid_fraction(const Bed& bed, const Box& region);
 
 }  // namespace granrad

@@ -17,10 +17,12 @@ constexpr double default_walks = 10000;  // paths, per update: 1 % noise in the 
 constexpr double default_rays_per_particle = 2000;
 constexpr double default_line_ends_per_particle = 24000;  // 500 directions; lines are far cheaper than rays
 
+constexpr double default_rays_of_walls = 300;  // correlation with traced walls: of the walls, per particle
 constexpr double default_line_ends_for_moments = 4800;  // 100 directions in each replicate
 
 double default_rays(RadiationKind kind, int order) {
   if (kind == RadiationKind::paths) return default_walks;
+  if (kind == RadiationKind::correlation) return default_rays_of_walls;
   if (order > 0) return default_line_ends_for_moments;
   return kind == RadiationKind::lines ? default_line_ends_per_particle : default_rays_per_particle;
 }
@@ -103,13 +105,17 @@ void check_order(TomlTable& table, RadiationKind kind, const Scene& scene) {
                   "nothing is closed with order > 0 (its moments close by themselves); leave it out");
 }
 
-/// A plug states its solid fraction; of other beds it is measured when they exist.
+/// A plug states its solid fraction, and a bed that is poured settles near random close packing; of other beds
+/// it is measured when they exist.
 void check_table(TomlTable& table, const std::filesystem::path& file, const Scene& scene) {
   if (!std::filesystem::is_regular_file(file)) return;  // reported by the reader
   try {
     const auto correlation = read_correlation(file);
-    if (scene.feed.kind == FeedSettings::Kind::plug && scene.feed.solid_fraction > 0)
-      Correlation(correlation, scene.feed.solid_fraction);
+    constexpr double poured = 0.53;  // the loosest that random packings of equal spheres settle to
+    if (scene.feed.kind == FeedSettings::Kind::plug)
+      require_solid_fraction(correlation, scene.feed.solid_fraction, "the plug");
+    if (scene.feed.kind == FeedSettings::Kind::hopper && norm(scene.gravity_m_s2) > 0)
+      require_solid_fraction(correlation, poured, "a bed poured under gravity, at least,");
   } catch (const InputError& error) {
     table.problem("table", fmt::format("= {} ({})", file.string(), error.what()));
   }
@@ -126,15 +132,20 @@ RadiationSettings read_radiation(TomlTable table, const Scene& scene, const std:
   const bool paths = settings.kind == RadiationKind::paths;
   settings.table = table.file({"table", "correlation table, for source = correlation"},
                               settings.kind == RadiationKind::correlation);
+  settings.traced_walls =
+      table.choice(
+          {"wall_rows", "of a correlation: exchange of the walls from the table, or by rays from the walls"},
+          {"table", "traced"}, "table") == "traced";
   settings.order = static_cast<int>(table.integer(
       {"order", "of the radiosity over each sphere, with lines: 0 uniform, 1 to 3 spherical harmonics"}, 0, 3,
       0));
-  settings.rays = table.number({"rays", "walks per update (paths), rays or line ends per particle (others)",
-                                "10000 (paths), 2000 (embree), 24000 (lines), 4800 (lines of order 1 to 3)"},
-                               {.min = paths ? 2.0 * path_batches : 1,
-                                .max = 1e9,
-                                .why = paths ? "walks per update" : "rays per particle"},
-                               default_rays(settings.kind, settings.order));
+  settings.rays = table.number(
+      {"rays", "walks per update (paths), rays or line ends per particle (others)",
+       "10000 (paths), 2000 (embree), 24000 (lines), 4800 (lines of order 1 to 3), 300 (traced wall rows)"},
+      {.min = paths ? 2.0 * path_batches : 1,
+       .max = 1e9,
+       .why = paths ? "walks per update" : "rays per particle"},
+      default_rays(settings.kind, settings.order));
   settings.every_s = table.number({"every_s", "time between updates of the radiation"},
                                   {.unit = "s", .min = 0, .min_exclusive = true}, settings.every_s);
   settings.closure =
@@ -148,6 +159,10 @@ RadiationSettings read_radiation(TomlTable table, const Scene& scene, const std:
 
   if (table.has("table") && settings.kind != RadiationKind::correlation)
     table.problem("table",
+                  fmt::format("is not used by source = {}; leave it out or set source = \"correlation\"",
+                              to_string(settings.kind)));
+  if (table.has("wall_rows") && settings.kind != RadiationKind::correlation)
+    table.problem("wall_rows",
                   fmt::format("is not used by source = {}; leave it out or set source = \"correlation\"",
                               to_string(settings.kind)));
   if (settings.order > 0) check_order(table, settings.kind, scene);

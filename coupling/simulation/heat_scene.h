@@ -20,7 +20,8 @@ const char* to_string(RadiationKind kind);
 struct RadiationSettings {
   RadiationKind kind = RadiationKind::none;
   std::filesystem::path table;  ///< correlation only
-  double rays = 0;              ///< paths: walks per update; embree, lines: rays per particle
+  bool traced_walls = false;    ///< correlation only: rows of the walls by rays, not by the table
+  double rays = 0;              ///< paths: walks per update; embree, lines, traced walls: rays per particle
   double every_s = 0.01;
   Closure closure = Closure::reciprocal;
   int order = 0;  ///< lines only: of the spherical harmonics of each sphere's radiosity; 0: one radiosity

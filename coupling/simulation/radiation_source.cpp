@@ -48,8 +48,13 @@ std::unique_ptr<ExchangeSource> line_source(const RadiationSettings& settings, c
   return std::make_unique<BlackLineSource>(line_options(settings, 0, threads), std::move(areas));
 }
 
-double stated_solid_fraction(const Scene& scene) {
-  return scene.feed.kind == FeedSettings::Kind::plug ? scene.feed.solid_fraction : 0;
+CorrelationUse correlation_use(const RadiationSettings& settings, int threads) {
+  CorrelationUse use;
+  use.wall_rows = settings.traced_walls ? WallRows::traced : WallRows::table;
+  use.wall_rays = settings.rays;
+  use.seed = settings.seed;
+  use.threads = threads;
+  return use;
 }
 
 }  // namespace
@@ -74,7 +79,7 @@ std::unique_ptr<ExchangeSource> make_radiation_source(const RadiationSettings& s
       return line_source(settings, scene, threads);
     case RadiationKind::correlation:
       return std::make_unique<RadiositySource>(
-          correlation_exchange(read_correlation(settings.table), stated_solid_fraction(scene)),
+          correlation_exchange(read_correlation(settings.table), correlation_use(settings, threads)),
           settings.closure);
   }
   return nullptr;
@@ -84,7 +89,7 @@ void check_radiation(const RadiationSettings& settings, const Scene& scene, cons
   if (settings.kind == RadiationKind::none || bed.size() == 0) return;
   const Enclosure enclosure = make_enclosure(bed, scene.region);
   if (settings.kind == RadiationKind::correlation)
-    correlation_exchange(read_correlation(settings.table), stated_solid_fraction(scene))(enclosure, 0);
+    correlation_exchange_areas(read_correlation(settings.table), enclosure, {});
   if (settings.kind == RadiationKind::lines)
     sweep_exchange_areas(enclosure, {.directions = 1, .lines_per_disc = 1, .replicates = 2});
 }
@@ -117,7 +122,12 @@ std::string describe(const RadiationSettings& settings) {
       return fmt::format("view factors by global lines, {:.0f} rays per particle, {}", settings.rays,
                          closure);
     case RadiationKind::correlation:
-      return fmt::format("correlation table {}, {}", settings.table.filename().string(), closure);
+      return fmt::format(
+          "correlation table {}, {}, {}", settings.table.filename().string(),
+          settings.traced_walls
+              ? fmt::format("rows of the walls traced with {:.0f} rays per particle", settings.rays)
+              : "walls from the table",
+          closure);
   }
   return "";
 }

@@ -6,8 +6,8 @@
 
 namespace granrad {
 
-/// The exchange source the settings ask for; null for none. A correlation table is used at the solid fraction
-/// of a plug feed, else at that of each enclosure it meets. Throws InputError, IoError (table).
+/// The exchange source the settings ask for; null for none. A correlation table is used at the solid
+/// fractions of each enclosure it meets. Throws InputError, IoError (table).
 std::unique_ptr<ExchangeSource> make_radiation_source(const RadiationSettings& settings, const Scene& scene,
                                                       int threads);
 

@@ -7,6 +7,7 @@
 #include "coupling/heat/heat_step.h"
 #include "coupling/heat/wall_area.h"
 #include "coupling/heat/wall_coefficients.h"
+#include "dem/bed/solid_fraction.h"
 #include "dem/io/saved_state.h"
 
 namespace granrad {

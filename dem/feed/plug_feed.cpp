@@ -8,6 +8,7 @@
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
 #include "dem/base/random.h"
+#include "dem/bed/solid_fraction.h"
 #include "dem/io/saved_state.h"
 #include "dem/packing/packing_shake.h"
 
@@ -144,10 +145,7 @@ void PlugFeed::reshuffle() {
 /// Adds to the mean of this half period, once the channel has been filled.
 void PlugFeed::measure_solid_fraction(const Bed& bed) {
   if (!settings_.start_filled && used_m_ < insertion_plane_m() - leaves_below_m()) return;
-  double volume = 0;
-  for (std::size_t i = 0; i < bed.size(); ++i)
-    if (channel_.contains(bed.position_m[i])) volume += sphere_volume(bed.radius_m[i]);
-  measured_sum_ += volume / channel_.volume();
+  measured_sum_ += solid_fraction(bed, channel_);
   ++measured_;
 }
 

@@ -21,6 +21,7 @@ struct StatisticsField {
   bool signed_value = false;
 };
 constexpr StatisticsField statistics_fields[] = {
+    {"snapshots", "snapshots that were fitted", &RowStatistics::snapshots},
     {"pp_samples", "pairs of particles that were fitted", &RowStatistics::pp_samples},
     {"pw_samples", "particles and walls that were fitted", &RowStatistics::pw_samples},
     {"pp_rmse", "rms of fit minus traced F_pp", &RowStatistics::pp_rmse},
@@ -31,6 +32,10 @@ constexpr StatisticsField statistics_fields[] = {
     {"pw_scatter", "part of pw_rmse that is scatter of the bed", &RowStatistics::pw_scatter},
     {"pp_held_out_rmse", "pp_rmse on snapshots that were not fitted", &RowStatistics::pp_held_out_rmse},
     {"pw_held_out_rmse", "pw_rmse on snapshots that were not fitted", &RowStatistics::pw_held_out_rmse},
+    {"pp_left_out_rmse", "pp_rmse of the table without this row, interpolated",
+     &RowStatistics::pp_left_out_rmse},
+    {"pw_left_out_rmse", "pw_rmse of the table without this row, interpolated",
+     &RowStatistics::pw_left_out_rmse},
     {"closure_mean", "mean over particles of the sum of F minus 1", &RowStatistics::closure_mean, true},
     {"closure_rms", "rms of the same", &RowStatistics::closure_rms},
 };
@@ -51,11 +56,17 @@ RowStatistics read_statistics(TomlTable table) {
   return statistics;
 }
 
-std::vector<double> read_coefficients(TomlTable& row, const char* key, std::size_t count, const char* form) {
+std::vector<double> read_coefficients(TomlTable& row, const char* key, CorrelationForm form,
+                                      Partner partner) {
   auto values = row.number_list({key, "coefficients, as many as the form takes"}, {}, 1);
+  const auto count = coefficient_count(form, partner);
   if (row.has(key) && values.size() != count)
-    row.problem(key, fmt::format("{} coefficients (form \"{}\" takes {}) give exactly {}", values.size(),
-                                 form, count, count));
+    row.problem(key, advised(fmt::format("{} coefficients (form \"{}\" takes {})", values.size(),
+                                         to_string(form), count),
+                             fmt::format("give exactly {}", count)));
+  else if (!values.empty())
+    if (const auto problem = coefficient_problem(form, partner, values); !problem.empty())
+      row.problem(key, problem);
   return values;
 }
 
@@ -67,30 +78,27 @@ CorrelationRow read_row(TomlTable& table, CorrelationForm form) {
                                      .max = 0.7405,
                                      .min_exclusive = true,
                                      .why = "volume of solid per volume; 0.7405 is the densest"});
-  row.pp = read_coefficients(table, "pp", pp_coefficient_count(form), to_string(form));
-  row.pw = read_coefficients(table, "pw", pw_coefficient_count(form), to_string(form));
+  row.pp = read_coefficients(table, "pp", form, Partner::sphere);
+  row.pw = read_coefficients(table, "pw", form, Partner::wall);
   row.statistics =
       read_statistics(table.table({"statistics", "How well the row fits, as vfgen fit wrote it"}));
-  if (form == CorrelationForm::transmittance && row.pp.size() == 2 && row.pw.size() == 3) {
-    if (row.pp[0] < 0 || row.pp[1] <= 0)
-      table.problem("pp", "a or b is negative (F would exceed the unobstructed value) both must be positive");
-    if (row.pw[0] <= 0 || row.pw[1] < 0 || row.pw[2] <= 0)
-      table.problem("pw", "t0, c or e is negative (F would grow with distance) all must be positive");
-  }
   return row;
 }
 
 void read_rows(TomlTable& root, CorrelationTable& table) {
   auto rows = root.tables({"row", "Coefficients at one solid fraction; rows ascend"});
-  if (rows.empty()) root.problem("row", "no [[row]] (a table needs at least one solid fraction) add [[row]]");
+  if (rows.empty())
+    root.problem("row", advised("no [[row]] (a table needs at least one solid fraction)", "add [[row]]"));
   for (auto& entry : rows) {
     table.rows.push_back(read_row(entry, table.form));
     const auto count = table.rows.size();
     if (count > 1 && entry.has("solid_fraction") &&
         !(table.rows[count - 1].solid_fraction > table.rows[count - 2].solid_fraction))
-      entry.problem("solid_fraction",
-                    fmt::format("{} after {} (rows ascend in solid fraction, each once) sort them",
-                                table.rows[count - 1].solid_fraction, table.rows[count - 2].solid_fraction));
+      entry.problem(
+          "solid_fraction",
+          advised(fmt::format("{} after {} (rows ascend in solid fraction, each once)",
+                              table.rows[count - 1].solid_fraction, table.rows[count - 2].solid_fraction),
+                  "sort them"));
   }
 }
 
@@ -103,28 +111,29 @@ CorrelationTable read_correlation(TomlDocument& document, const std::string& nam
   root.choice({"format", "what this file is"}, {"granrad.correlation"});
   root.integer({"version", "of the format"}, 1, file_version);
   table.title = root.string({"title", "what the table describes"}, "");
-  table.form = root.choice({"form", "of the correlation; its equations are in docs/equations.md"},
-                           {"cubic", "transmittance"}) == "transmittance"
-                   ? CorrelationForm::transmittance
-                   : CorrelationForm::cubic;
+  table.form = correlation_form(root.choice(
+      {"form", "of the correlation; its equations are in docs/equations.md"}, correlation_form_names()));
   root.choice({"pp_distance", "what d* of two particles is; contact at 1"}, {"centre_distance_over_d"});
   table.pw_distance = root.choice({"pw_distance", "what d* of particle and wall is; contact at 0.5, or at 1"},
                                   {"centre_to_plane_over_d", "h_plus_r_over_d"}) == "h_plus_r_over_d"
                           ? WallDistance::h_plus_r_over_d
                           : WallDistance::centre_to_plane_over_d;
-  if (table.form == CorrelationForm::transmittance && table.pw_distance == WallDistance::h_plus_r_over_d)
+  if (!takes_wall_distance_from_surface(table.form) && table.pw_distance == WallDistance::h_plus_r_over_d)
     root.problem("pw_distance",
-                 "\"h_plus_r_over_d\" (form \"transmittance\" is defined for h/d, contact at 0.5) use "
-                 "\"centre_to_plane_over_d\"");
+                 advised(fmt::format("\"h_plus_r_over_d\" (form \"{}\" is defined for h/d, contact at 0.5)",
+                                     to_string(table.form)),
+                         "use \"centre_to_plane_over_d\""));
   table.pp_cutoff = root.number({"pp_cutoff", "d* of the farthest pair of particles"},
                                 {.unit = "1",
                                  .min = 1,
                                  .max = largest_pp_cutoff,
                                  .min_exclusive = true,
                                  .why = "d* of the farthest pair, contact is 1"});
-  table.pw_cutoff =
-      root.number({"pw_cutoff", "d* of the farthest wall"},
-                  {.unit = "1", .min = 1, .min_exclusive = true, .why = "d* of the farthest wall"});
+  table.pw_cutoff = root.number({"pw_cutoff", "d* of the farthest wall"}, {.unit = "1",
+                                                                           .min = 1,
+                                                                           .max = largest_pw_cutoff,
+                                                                           .min_exclusive = true,
+                                                                           .why = "d* of the farthest wall"});
   table.clip = root.number({"clip", "view factors below are taken as zero"},
                            {.unit = "1", .min = 0, .max = 1e-3, .why = "a view factor is never negative"}, 0);
   read_rows(root, table);

@@ -12,7 +12,6 @@
 #include "dem/bed/cell_grid.h"
 #include "fit/correlation/wall_exchange.h"
 #include "raytrace/exact.h"
-#include "raytrace/facets.h"
 
 namespace granrad {
 
@@ -30,35 +29,91 @@ struct Row {
 };
 
 void refuse_what_a_table_cannot_serve(const CorrelationTable& table, const Enclosure& enclosure) {
+  const std::string advice = "trace view factors instead";
   std::vector<std::string> problems;
   if (!enclosure.radius_m.empty()) {
     const auto [low, high] = std::minmax_element(enclosure.radius_m.begin(), enclosure.radius_m.end());
     if (*high > 1.01 * *low)
-      problems.push_back(
-          fmt::format("{}: radii = {:.4g} to {:.4g} m (correlations hold for equal spheres, within "
-                      "1 %) trace view factors instead",
-                      table.name, *low, *high));
+      problems.push_back(advised(
+          fmt::format("{}: radii = {:.4g} to {:.4g} m (correlations hold for equal spheres, within 1 %)",
+                      table.name, *low, *high),
+          advice));
   }
   for (const auto& wall : enclosure.walls)
     if (!wall.is_polygon())
-      problems.push_back(
-          fmt::format("{}: wall {} is a mesh (correlations hold for planar walls) trace view "
-                      "factors instead",
-                      table.name, wall.name));
+      problems.push_back(advised(
+          fmt::format("{}: wall {} is a mesh (correlations hold for planar walls)", table.name, wall.name),
+          advice));
   for (int axis = 0; axis < 3; ++axis)
     if (enclosure.periodic[axis])
-      problems.push_back(
-          fmt::format("{}: the box is periodic in {} (correlations need walls) trace view factors "
-                      "instead",
-                      table.name, "xyz"[axis]));
+      problems.push_back(advised(
+          fmt::format("{}: the box is periodic in {} (correlations need walls)", table.name, "xyz"[axis]),
+          advice));
   if (!problems.empty()) throw InputError(problems);
 }
 
+/// A table at every solid fraction a field has: at the whole's, or at steps between which F is interpolated.
+class LocalCorrelation {
+ public:
+  LocalCorrelation(const CorrelationTable& table, const SolidFractionField& field, double farthest)
+      : last_(table.rows.back().solid_fraction) {
+    if (field.uniform()) {
+      levels_.emplace_back(table, field.whole(), farthest);
+      return;
+    }
+    const double high = std::min(field.largest(), last_);
+    const auto count = static_cast<std::size_t>(std::ceil(high / step)) + 1;
+    for (std::size_t k = 0; k < count; ++k)
+      levels_.emplace_back(table, std::min(static_cast<double>(k) * step, last_), farthest);
+  }
+
+  double pp(double d_star, double phi) const {
+    return mixed(phi, [&](const Correlation& level) { return level.pp(d_star); });
+  }
+  double pw(double h_over_d, double unobstructed, double phi) const {
+    return mixed(phi, [&](const Correlation& level) { return level.pw(h_over_d, unobstructed); });
+  }
+  double cutoff() const { return levels_.front().pp_cutoff(); }
+
+ private:
+  static constexpr double step = 0.01;
+
+  template <class Function>
+  double mixed(double phi, Function&& function) const {
+    if (levels_.size() == 1) return function(levels_.front());
+    const auto upper =
+        std::upper_bound(levels_.begin() + 1, levels_.end() - 1, phi,
+                         [](double p, const Correlation& c) { return p < c.solid_fraction(); });
+    const auto& low = *(upper - 1);
+    const double t =
+        std::min(1.0, (phi - low.solid_fraction()) / (upper->solid_fraction() - low.solid_fraction()));
+    return (1 - t) * function(low) + t * function(*upper);
+  }
+
+  double last_;
+  std::vector<Correlation> levels_;  ///< ascending
+};
+
+/// d* beyond which all pairs together hold less than `negligible` of a row: sum of F over shells of
+/// 24 phi d*^2 dd* spheres.
+double farthest_that_counts(const CorrelationTable& table, double solid_fraction) {
+  constexpr double negligible = 2e-4, step = 0.125;
+  const double phi = std::min(solid_fraction, table.rows.back().solid_fraction);
+  const Correlation correlation(table, phi);
+  double beyond = 0, d = table.pp_cutoff;
+  for (; d > 2; d -= step) {
+    const double middle = d - 0.5 * step;
+    beyond += correlation.pp(middle) * 24 * phi * middle * middle * step;
+    if (beyond > negligible) break;
+  }
+  return d;
+}
+
 /// Every sphere's neighbours within the cutoff.
-std::vector<Row> sphere_rows(const Correlation& correlation, const Enclosure& enclosure,
-                             const std::vector<double>& area) {
+std::vector<Row> sphere_rows(const LocalCorrelation& correlation, const SolidFractionField& field,
+                             const Enclosure& enclosure, const std::vector<double>& area) {
   const std::size_t n = enclosure.sphere_count();
-  const double cutoff_m = correlation.pp_cutoff() * mean_diameter_m(enclosure.radius_m) * 1.01;
+  const double cutoff_m = correlation.cutoff() * mean_diameter_m(enclosure.radius_m) * 1.01;
   std::vector<std::int32_t> all(n);
   std::iota(all.begin(), all.end(), 0);
   const CellGrid grid(enclosure.centre_m, all, cutoff_m, enclosure.box, enclosure.periodic);
@@ -69,11 +124,12 @@ std::vector<Row> sphere_rows(const Correlation& correlation, const Enclosure& en
 #pragma omp for schedule(dynamic, 64)
     for (std::size_t i = 0; i < n; ++i) {
       found.clear();
-      grid.visit_around(enclosure.centre_m[i], [&](std::int32_t j, const Vec3& p) {
+      const Vec3 centre = enclosure.centre_m[i];
+      grid.visit_around(centre, [&](std::int32_t j, const Vec3& p) {
         if (static_cast<std::size_t>(j) == i) return;
-        const double d_star =
-            norm(p - enclosure.centre_m[i]) / (enclosure.radius_m[i] + enclosure.radius_m[j]);
-        const double factor = correlation.pp(d_star);
+        const double d_star = norm(p - centre) / (enclosure.radius_m[i] + enclosure.radius_m[j]);
+        if (d_star >= correlation.cutoff()) return;
+        const double factor = correlation.pp(d_star, field.at(0.5 * (p + centre)));
         if (factor > 0) found.emplace_back(j, 0.5 * (area[i] + area[j]) * factor);
       });
       std::sort(found.begin(), found.end());
@@ -95,22 +151,33 @@ std::vector<std::vector<double>> unobstructed_factors(const Enclosure& enclosure
   return factors;
 }
 
-/// Sphere-wall entries; columns of the walls follow those of the spheres.
-void add_walls(const Correlation& correlation, const Enclosure& enclosure, const std::vector<double>& area,
-               const std::vector<std::vector<double>>& exact, std::vector<Row>& rows) {
-  const std::size_t n = enclosure.sphere_count();
+/// X of each sphere and wall [wall][sphere] from the table.
+std::vector<std::vector<double>> table_walls(const LocalCorrelation& correlation,
+                                             const SolidFractionField& field, const Enclosure& enclosure,
+                                             const std::vector<double>& area,
+                                             const std::vector<std::vector<double>>& exact) {
+  std::vector<std::vector<double>> x(enclosure.walls.size(), std::vector<double>(enclosure.sphere_count()));
   for (std::size_t w = 0; w < enclosure.walls.size(); ++w) {
     const Wall& wall = enclosure.walls[w];
     const Vec3 normal = polygon_normal(wall);
-    for (std::size_t i = 0; i < n; ++i) {
-      const double h_over_d =
-          dot(enclosure.centre_m[i] - wall.vertices[0], normal) / (2 * enclosure.radius_m[i]);
-      const double x = area[i] * correlation.pw(h_over_d, exact[w][i]);
-      if (!(x > 0)) continue;
-      rows[i].add(n + w, x);
-      rows[n + w].add(i, x);
+    for (std::size_t i = 0; i < enclosure.sphere_count(); ++i) {
+      const Vec3 centre = enclosure.centre_m[i];
+      const double height = dot(centre - wall.vertices[0], normal);
+      const double phi = field.uniform() ? field.whole() : field.between(centre, centre - normal * height);
+      x[w][i] = area[i] * correlation.pw(height / (2 * enclosure.radius_m[i]), exact[w][i], phi);
     }
   }
+  return x;
+}
+
+/// Sphere-wall entries; columns of the walls follow those of the spheres.
+void add_walls(const std::vector<std::vector<double>>& x, std::size_t spheres, std::vector<Row>& rows) {
+  for (std::size_t w = 0; w < x.size(); ++w)
+    for (std::size_t i = 0; i < spheres; ++i) {
+      if (!(x[w][i] > 0)) continue;
+      rows[i].add(spheres + w, x[w][i]);
+      rows[spheres + w].add(i, x[w][i]);
+    }
 }
 
 void add_wall_pairs(std::size_t first_wall, const WallExchange& walls, std::vector<Row>& rows) {
@@ -150,52 +217,56 @@ ExchangeAreas flattened(const std::vector<Row>& rows, std::vector<double> area) 
   return areas;
 }
 
-}  // namespace
-
-double solid_fraction(const Enclosure& enclosure) {
-  Facets facets(0);
-  for (std::size_t w = 0; w < enclosure.walls.size(); ++w)
-    facets.add(enclosure.walls[w], static_cast<std::int32_t>(w), {}, 1);
-  const auto volume = facets.enclosed_volume({});
-  if (!volume || !(*volume > 0))
-    throw InputError(
-        "the walls do not enclose a volume (the solid fraction of the bed cannot be measured) close the box "
-        "with "
-        "walls, or give the solid fraction");
-  double solid = 0;
-  for (const double r : enclosure.radius_m) solid += sphere_volume(r);
-  return solid / *volume;
+/// What a table cannot serve although its range would do: most of the bed is denser than the mean tells.
+void require_local_solid_fractions(const CorrelationTable& table, const SolidFractionField& field) {
+  require_solid_fraction(table, field.whole(), "the bed");
+  if (!field.uniform())
+    require_solid_fraction(table, field.mean_at_spheres(), "the part of the box the particles fill");
 }
 
+WallExchange walls_of(const Enclosure& enclosure, const CorrelationUse& use, const SolidFractionField& field,
+                      std::uint64_t update) {
+  if (use.wall_rows == WallRows::table)
+    return wall_exchange(enclosure, field,
+                         enclosure.sphere_count() == 0 ? 1 : mean_diameter_m(enclosure.radius_m));
+  const double spheres = std::max<double>(1000, static_cast<double>(enclosure.sphere_count()));
+  return traced_wall_exchange(enclosure, use.wall_rays * spheres, use.seed + update, use.threads);
+}
+
+}  // namespace
+
 ExchangeAreas correlation_exchange_areas(const CorrelationTable& table, const Enclosure& enclosure,
-                                         double solid_fraction) {
+                                         const CorrelationUse& use, std::uint64_t update,
+                                         CorrelationUsed* used) {
   refuse_what_a_table_cannot_serve(table, enclosure);
+  const std::size_t n = enclosure.sphere_count();
   const auto area = surface_areas(enclosure);
-  const bool empty = enclosure.sphere_count() == 0;
-  std::vector<Row> rows;
+  const double whole = n == 0 ? 0 : use.solid_fraction > 0 ? use.solid_fraction : solid_fraction(enclosure);
+  const SolidFractionField field =
+      use.uniform ? SolidFractionField(whole) : SolidFractionField(enclosure, whole);
+  require_local_solid_fractions(table, field);
   const auto exact = unobstructed_factors(enclosure);
-  const auto walls = wall_exchange(
-      enclosure, empty ? 0 : extinction_1_m(solid_fraction, mean_diameter_m(enclosure.radius_m)));
-  if (empty) {
+  const auto walls = walls_of(enclosure, use, field, update);
+  std::vector<Row> rows;
+  if (n > 0) {
+    const double farthest = field.uniform() ? farthest_that_counts(table, whole) : table.pp_cutoff;
+    const LocalCorrelation correlation(table, field, farthest);
+    rows = sphere_rows(correlation, field, enclosure, area);
     rows.resize(enclosure.surface_count());
-    add_wall_pairs(0, walls, rows);
-  } else {
-    const Correlation correlation(table, solid_fraction);
-    rows = sphere_rows(correlation, enclosure, area);
-    rows.resize(enclosure.surface_count());
-    add_walls(correlation, enclosure, area, exact, rows);
-    add_wall_pairs(enclosure.sphere_count(), walls, rows);
+    add_walls(walls.sphere.empty() ? table_walls(correlation, field, enclosure, area, exact) : walls.sphere,
+              n, rows);
+    if (used) *used = {whole, field.deviation(), !field.uniform(), farthest};
   }
+  rows.resize(enclosure.surface_count());
+  add_wall_pairs(n, walls, rows);
   add_surroundings(enclosure, area, exact, walls, rows);
   return flattened(rows, area);
 }
 
-std::function<ExchangeAreas(const Enclosure&, std::uint64_t)> correlation_exchange(
-    CorrelationTable table, double fixed_solid_fraction) {
-  return [table = std::move(table), fixed_solid_fraction](const Enclosure& enclosure, std::uint64_t) {
-    const double phi = fixed_solid_fraction > 0 || enclosure.sphere_count() == 0 ? fixed_solid_fraction
-                                                                                 : solid_fraction(enclosure);
-    return correlation_exchange_areas(table, enclosure, phi);
+std::function<ExchangeAreas(const Enclosure&, std::uint64_t)> correlation_exchange(CorrelationTable table,
+                                                                                   CorrelationUse use) {
+  return [table = std::move(table), use](const Enclosure& enclosure, std::uint64_t update) {
+    return correlation_exchange_areas(table, enclosure, use, update);
   };
 }
 

@@ -1,10 +1,13 @@
 #include "fit/correlation/wall_exchange.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "dem/base/constants.h"
+#include "raytrace/embree/embree_tracer.h"
 #include "raytrace/facets.h"
 #include "raytrace/rays/emission.h"
+#include "raytrace/rays/ray_rows.h"
 
 namespace granrad {
 
@@ -26,9 +29,19 @@ std::array<double, 4> low_discrepancy_point(int k) {
   return u;
 }
 
+/// What of a bed shades a path: Beer's law.
+struct Shade {
+  const SolidFractionField& field;
+  double diameter_m;
+  double transmittance(const Vec3& from, const Vec3& direction, double distance) const {
+    const double phi = field.uniform() ? field.whole() : field.between(from, from + direction * distance);
+    return std::exp(-extinction_1_m(phi, diameter_m) * distance);
+  }
+};
+
 /// Adds what wall v sends through the bed to each wall; returns the fraction that meets none.
 double trace_wall(const Enclosure& empty, const Emitter& emitter, const Facets& facets, std::size_t v,
-                  double extinction, double* row) {
+                  const Shade& shade, double* row) {
   int missed = 0;
   for (int k = 0; k < rays_per_wall; ++k) {
     const auto u = low_discrepancy_point(k);
@@ -43,7 +56,7 @@ double trace_wall(const Enclosure& empty, const Emitter& emitter, const Facets& 
     if (wall < 0)
       ++missed;
     else
-      row[wall] += std::exp(-extinction * nearest);
+      row[wall] += shade.transmittance(ray.origin_m, ray.direction, nearest);
   }
   return static_cast<double>(missed) / rays_per_wall;
 }
@@ -54,7 +67,7 @@ double extinction_1_m(double solid_fraction, double diameter_m) {
   return 1.5 * solid_fraction / (diameter_m * (1 - solid_fraction));
 }
 
-WallExchange wall_exchange(const Enclosure& enclosure, double extinction_1_m) {
+WallExchange wall_exchange(const Enclosure& enclosure, const SolidFractionField& field, double diameter_m) {
   const std::size_t walls = enclosure.walls.size();
   Enclosure empty;
   empty.walls = enclosure.walls;
@@ -64,19 +77,63 @@ WallExchange wall_exchange(const Enclosure& enclosure, double extinction_1_m) {
   for (std::size_t w = 0; w < walls; ++w) facets.add(empty.walls[w], static_cast<std::int32_t>(w), {}, 1);
   const Emitter emitter(empty);
 
+  const Shade shade{field, diameter_m};
   WallExchange result;
   result.walls = walls;
   result.opening.resize(walls);
   std::vector<double> arrived(walls * walls, 0.0);  // weight of the rays v -> w
 #pragma omp parallel for schedule(static)
   for (std::size_t v = 0; v < walls; ++v) {
-    result.opening[v] = trace_wall(empty, emitter, facets, v, extinction_1_m, arrived.data() + v * walls);
+    result.opening[v] = trace_wall(empty, emitter, facets, v, shade, arrived.data() + v * walls);
   }
   result.value.resize(walls * walls);
   for (std::size_t v = 0; v < walls; ++v)
     for (std::size_t w = 0; w < walls; ++w)
       result.value[v * walls + w] = (arrived[v * walls + w] + arrived[w * walls + v]) / rays_per_wall /
                                     (1 / area(empty.walls[v]) + 1 / area(empty.walls[w]));
+  return result;
+}
+
+WallExchange traced_wall_exchange(const Enclosure& enclosure, double rays, std::uint64_t seed, int threads) {
+  const std::size_t n = enclosure.sphere_count(), walls = enclosure.walls.size();
+  const auto area_m2 = surface_areas(enclosure);
+  double emitting_m2 = 0;
+  for (std::size_t w = 0; w < walls; ++w) emitting_m2 += area_m2[n + w];
+  std::vector<std::int64_t> launched(enclosure.surface_count(), 0);
+  for (std::size_t w = 0; w < walls; ++w)
+    launched[n + w] = std::max<std::int64_t>(1, std::llround(rays * area_m2[n + w] / emitting_m2));
+  TraceOptions options;
+  options.seed = seed;
+  options.threads = threads;
+  const EmbreeTracer tracer(enclosure, threads);
+  const HitCounts counts = trace_rows(enclosure, area_m2, launched, options, [&](const EmittedRay& ray) {
+    const End end = tracer.first_end(ray.start.origin_m, ray.start.direction, ray.surface);
+    return RayEnd{end.surface, end.distance_m};
+  });
+  WallExchange result;
+  result.walls = walls;
+  result.value.assign(walls * walls, 0);
+  result.opening.assign(walls, 0);
+  result.sphere.assign(walls, std::vector<double>(n, 0));
+  for (std::size_t w = 0; w < walls; ++w) {
+    const std::size_t i = n + w;
+    for (auto k = counts.pattern.row_begin[i]; k < counts.pattern.row_begin[i + 1]; ++k) {
+      const auto j = static_cast<std::size_t>(counts.pattern.column[k]);
+      const double x =
+          area_m2[i] * static_cast<double>(counts.hits[k]) / static_cast<double>(counts.launched[i]);
+      if (j < n)
+        result.sphere[w][j] = x;
+      else if (j < n + walls)
+        result.value[w * walls + j - n] = x;
+      else
+        result.opening[w] = x / area_m2[i];
+    }
+  }
+  for (std::size_t v = 0; v < walls; ++v)  // rays in proportion to area: both ends know as much
+    for (std::size_t w = 0; w < v; ++w) {
+      const double x = 0.5 * (result.value[v * walls + w] + result.value[w * walls + v]);
+      result.value[v * walls + w] = result.value[w * walls + v] = x;
+    }
   return result;
 }
 

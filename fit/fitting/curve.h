@@ -1,29 +1,25 @@
 #pragma once
-#include <array>
+#include <algorithm>
 #include <vector>
 
 #include "fit/correlation/correlation.h"
 
 namespace granrad {
 
-/// A curve to fit: F as a function of distance and of the unobstructed F, with its derivatives by the fitted
-/// parameters. Coefficients of the transmittance forms that must be positive are fitted as logarithms.
+/// A curve to fit: F as a function of distance and of the unobstructed F, with its derivatives by the
+/// coefficients.
 struct Curve {
   CorrelationForm form = CorrelationForm::cubic;
-  bool wall = false;  ///< false: pair (contact at 1), true: wall (h/d, contact at 0.5)
+  Partner partner = Partner::sphere;
+  WallDistance pw_distance = WallDistance::centre_to_plane_over_d;  ///< of the coefficients; samples have h/d
 
-  static constexpr int most_parameters = 4;
-  int parameters() const {
-    return static_cast<int>(wall ? pw_coefficient_count(form) : pp_coefficient_count(form));
+  std::size_t size() const { return coefficient_count(form, partner); }
+  /// Value; `derivative` [size()] may be null. `distance`: d* of a pair, h/d of a wall.
+  double value(const double* coefficient, double distance, double unobstructed, double* derivative) const {
+    const double at = partner == Partner::sphere ? std::max(distance, 1.0)
+                                                 : wall_distance(pw_distance, std::max(distance, 0.5));
+    return form_value(form, partner, coefficient, at, unobstructed, derivative);
   }
-  /// Value; `derivative` [parameters()] may be null.
-  double value(const double* parameter, double distance, double unobstructed, double* derivative) const;
-
-  std::vector<double> start() const;                                             ///< parameters to start from
-  std::vector<double> coefficients(const std::vector<double>& parameter) const;  ///< of the table
-  /// Standard errors of the coefficients from those of the parameters.
-  std::vector<double> coefficient_errors(const std::vector<double>& parameter,
-                                         const std::vector<double>& parameter_error) const;
 };
 
 }  // namespace granrad

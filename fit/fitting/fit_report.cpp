@@ -19,12 +19,8 @@ std::string with_error(double value, const std::vector<double>& errors, std::siz
 void coefficient_table(HtmlReport& report, const std::vector<RowFit>& rows, bool walls,
                        CorrelationForm form) {
   std::vector<std::string> header = {"solid fraction"};
-  if (form == CorrelationForm::cubic)
-    header.insert(header.end(), {"c0", "c1", "c2", "c3"});
-  else if (walls)
-    header.insert(header.end(), {"t0", "c", "e"});
-  else
-    header.insert(header.end(), {"a", "b"});
+  const auto names = coefficient_names(form, walls ? Partner::wall : Partner::sphere);
+  header.insert(header.end(), names.begin(), names.end());
   std::vector<std::vector<std::string>> lines;
   for (const auto& row : rows) {
     const auto& fit = walls ? row.pw : row.pp;
@@ -42,10 +38,11 @@ void statistics_table(HtmlReport& report, const std::vector<RowFit>& rows, bool 
     lines.push_back({fmt::format("{:.4f}", row.row.solid_fraction), fmt::format("{}", row.origins.size()),
                      fmt::format("{:.0f}", fit.samples), fmt::format("{:.3e}", fit.rmse),
                      fmt::format("{:.3e}", fit.ray_noise), fmt::format("{:.3e}", fit.scatter),
-                     fit.held_out_rmse > 0 ? fmt::format("{:.3e}", fit.held_out_rmse) : "one snapshot"});
+                     fit.held_out_rmse > 0 ? fmt::format("{:.3e}", fit.held_out_rmse) : "one snapshot",
+                     fit.left_out_rmse > 0 ? fmt::format("{:.3e}", fit.left_out_rmse) : "end row"});
   }
   report.table({"solid fraction", "snapshots", "samples", "RMSE", "of it ray noise",
-                "scatter at one distance", "held-out RMSE"},
+                "scatter at one distance", "RMSE on snapshots held out", "RMSE without this row"},
                lines);
 }
 
@@ -127,13 +124,12 @@ void closure_table(HtmlReport& report, const std::vector<RowFit>& rows) {
 void write_fit_report(const std::filesystem::path& file, const CorrelationTable& table,
                       const std::vector<RowFit>& rows) {
   HtmlReport report(table.title.empty() ? "View factor correlation" : table.title);
+  report.paragraph(describe(table.form) +
+                   ". Unweighted least squares over all pairs, invisible ones included.");
   report.paragraph(
-      table.form == CorrelationForm::cubic
-          ? "F = c0 + c1/d* + c2/d*² + c3/d*³ by unweighted least squares over all pairs, invisible ones "
-            "included."
-          : "Pairs: the exact two-sphere factor times exp(−a (d* − 1)^b). Walls: the exact sphere-to-polygon "
-            "factor times t0 exp(−c (h/d − 1/2)^e). Unweighted least squares over all pairs, invisible ones "
-            "included.");
+      "Errors of coefficients: ± the standard error by the scatter between snapshots, widened by Student's t so "
+      "that ± 1.96 of them cover 95 %; with one snapshot pairs are taken as independent, which they are not. "
+      "RMSE without this row: of the table interpolated between its neighbours.");
   for (const bool walls : {false, true}) {
     report.heading(walls ? "Particle to wall" : "Particle to particle");
     coefficient_table(report, rows, walls, table.form);

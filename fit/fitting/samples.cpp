@@ -46,23 +46,24 @@ void add_sample(const HitCounts& counts, std::size_t i, std::size_t j, double di
 
 void refuse_unfit(const Enclosure& enclosure, const HitCounts& counts, const std::string& origin) {
   std::vector<std::string> problems;
+  const auto problem = [&](const std::string& cause, const std::string& advice) {
+    problems.push_back(advised(origin + ": " + cause, advice));
+  };
   if (enclosure.sphere_count() < 2)
-    problems.push_back(fmt::format("{}: {} spheres (a pair function needs at least two) trace a bed", origin,
-                                   enclosure.sphere_count()));
+    problem(fmt::format("{} spheres (a pair function needs at least two)", enclosure.sphere_count()),
+            "trace a bed");
   else if (const auto [low, high] = std::minmax_element(enclosure.radius_m.begin(), enclosure.radius_m.end());
            *high > 1.01 * *low)
-    problems.push_back(
-        fmt::format("{}: radii = {:.4g} to {:.4g} m (correlations hold for equal spheres, within 1 %) "
-                    "fit sizes of one kind",
-                    origin, *low, *high));
+    problem(fmt::format("radii = {:.4g} to {:.4g} m (correlations hold for equal spheres, within 1 %)", *low,
+                        *high),
+            "fit sizes of one kind");
   if (counts.launched.size() != enclosure.surface_count())
-    problems.push_back(
-        fmt::format("{}: {} rows of counts for {} surfaces (the file is inconsistent) trace it again", origin,
-                    counts.launched.size(), enclosure.surface_count()));
+    problem(fmt::format("{} rows of counts for {} surfaces (the file is inconsistent)",
+                        counts.launched.size(), enclosure.surface_count()),
+            "trace it again");
   for (std::size_t i = 0; problems.empty() && i < enclosure.sphere_count(); ++i)
     if (counts.launched[i] <= 0)
-      problems.push_back(fmt::format(
-          "{}: sphere {} launched no rays (nothing is known of it) trace with more rays", origin, i));
+      problem(fmt::format("sphere {} launched no rays (nothing is known of it)", i), "trace with more rays");
   if (!problems.empty()) throw InputError(problems);
 }
 

@@ -10,6 +10,7 @@
 #include "dem/packing/packing.h"
 #include "fit/correlation/correlation_source.h"
 #include "fit/correlation/unobstructed_pair.h"
+#include "raytrace/exact.h"
 
 namespace granrad {
 
@@ -35,6 +36,12 @@ class Checker {
  private:
   void problem(const std::string& text) { findings_.push_back({true, table_.name + ": " + text}); }
   void note(const std::string& text) { findings_.push_back({false, table_.name + ": " + text}); }
+  void report(bool wrong, const std::string& text) {
+    if (wrong)
+      problem(advised(text, "refit this row"));
+    else
+      note(text);
+  }
   CheckedCurve pair_curve(const CorrelationRow& row) const;
   CheckedCurve wall_curve(const CorrelationRow& row) const;
   void check_upper(const CorrelationRow& row, const CheckedCurve& curve);
@@ -42,6 +49,7 @@ class Checker {
   void check_monotone(const CorrelationRow& row, const CheckedCurve& curve);
   void check_neighbours();
   void check_closure(const CorrelationRow& row);
+  void check_walls(const CorrelationRow& row, const Enclosure& bed);
 
   const CorrelationTable& table_;
   std::vector<CheckFinding> findings_;
@@ -58,7 +66,7 @@ CheckedCurve Checker::pair_curve(const CorrelationRow& row) const {
 
 /// Against an unbounded wall: the exact factor is 1/2 at every distance.
 CheckedCurve Checker::wall_curve(const CorrelationRow& row) const {
-  const double shift = table_.pw_distance == WallDistance::h_plus_r_over_d ? 0.5 : 0;
+  const double shift = wall_distance(table_.pw_distance, 0);
   return {"F_pw",
           table_.pw_distance == WallDistance::h_plus_r_over_d ? "(h + r)/d" : "h/d",
           0.5 + shift,
@@ -77,10 +85,7 @@ void Checker::check_upper(const CorrelationRow& row, const CheckedCurve& curve) 
       "solid fraction {}: {}({} = {:.2f}) = {:.4g} (with nothing in between it would be {:.4g}; held "
       "there in use)",
       row.solid_fraction, curve.name, curve.distance, at, curve.raw(at), curve.bound(at));
-  if (part > overshoot_allowed)
-    problem(text + " refit this row");
-  else
-    note(text);
+  report(part > overshoot_allowed, text);
 }
 
 void Checker::check_lower(const CorrelationRow& row, const CheckedCurve& curve) {
@@ -94,10 +99,7 @@ void Checker::check_lower(const CorrelationRow& row, const CheckedCurve& curve) 
   const auto text =
       fmt::format("solid fraction {}: {} is negative from {} = {:.2f}, down to {:.2e} (held at {} in use)",
                   row.solid_fraction, curve.name, curve.distance, first, lowest, table_.clip);
-  if (first <= curve.contact)
-    problem(text + " refit this row");
-  else
-    note(text);
+  report(first <= curve.contact, text);
 }
 
 void Checker::check_monotone(const CorrelationRow& row, const CheckedCurve& curve) {
@@ -114,10 +116,7 @@ void Checker::check_monotone(const CorrelationRow& row, const CheckedCurve& curv
       "solid fraction {}: {} grows with distance, by {:.2g} ({:.1f} % of its contact value) up "
       "to {} = {:.2f}",
       row.solid_fraction, curve.name, growth, 100 * growth / contact, curve.distance, at);
-  if (growth > growth_allowed * contact)
-    problem(text + " (shading only grows with distance) refit this row");
-  else
-    note(text);
+  report(growth > growth_allowed * contact, text + " (shading only grows with distance)");
 }
 
 void Checker::check_neighbours() {
@@ -156,7 +155,8 @@ void Checker::check_closure(const CorrelationRow& row) {
                      row.solid_fraction));
     return;
   }
-  const auto areas = correlation_exchange_areas(table_, bed, row.solid_fraction);
+  const auto areas =
+      correlation_exchange_areas(table_, bed, {.solid_fraction = row.solid_fraction, .uniform = true});
   double sum = 0, sum2 = 0;
   for (std::size_t i = 0; i < bed.sphere_count(); ++i) {
     double total = 0;
@@ -171,10 +171,32 @@ void Checker::check_closure(const CorrelationRow& row) {
       "solid fraction {}: row sums of {} spheres in a box of 12.5 x 5 x 25 d are {:.3f} in the "
       "mean, {:.3f} rms off 1 before closing",
       row.solid_fraction, bed.sphere_count(), 1 + mean, std::sqrt(sum2 / n));
-  if (std::abs(mean) > closure_allowed)
-    problem(text + " (they must be 1) refit this row");
-  else
-    note(text);
+  report(std::abs(mean) > closure_allowed, text + " (1 in truth)");
+  check_walls(row, bed);
+}
+
+/// How often the wall function asks for more than a wall's own exact factor, over the spheres and walls of the
+/// bed; in use it is held there, so that the walls never hold more than 1 of a lone sphere.
+void Checker::check_walls(const CorrelationRow& row, const Enclosure& bed) {
+  std::size_t pairs = 0, beyond = 0;
+  double worst = 0, possible = 0;
+  for (const auto& wall : bed.walls) {
+    const Vec3 normal = polygon_normal(wall);
+    for (std::size_t i = 0; i < bed.sphere_count(); ++i, ++pairs) {
+      const double exact = exact_sphere_polygon(bed.centre_m[i], wall);
+      const double h_over_d = dot(bed.centre_m[i] - wall.vertices[0], normal) / (2 * bed.radius_m[i]);
+      if (wall_distance(table_.pw_distance, h_over_d) >= table_.pw_cutoff) continue;
+      const double raw = raw_pw(table_, row, h_over_d, exact);
+      beyond += raw > exact;
+      if (raw - exact > worst) worst = raw - exact, possible = exact;
+    }
+  }
+  if (beyond > 0)
+    note(fmt::format(
+        "solid fraction {}: {:.2g} % of the F_pw in that box exceed the exact factor of their wall, by up "
+        "to {:.2g} ({:.3g} where {:.3g} is possible; held there in use)",
+        row.solid_fraction, 100.0 * static_cast<double>(beyond) / static_cast<double>(pairs), worst,
+        possible + worst, possible));
 }
 
 std::vector<CheckFinding> Checker::run() {

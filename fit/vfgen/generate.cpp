@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "dem/base/error.h"
 #include "dem/base/toml_reader.h"
 #include "dem/packing/packing.h"
 #include "raytrace/rays/view_factor_file.h"
@@ -46,9 +47,9 @@ void read_snapshot_settings(TomlTable table, GenerateSettings& s) {
       table.number({"diameter_m", "diameter of the spheres"}, {.unit = "m", .min = 0, .min_exclusive = true});
   for (int axis = 0; axis < 3; ++axis)
     if (s.size_m[axis] > 0 && s.diameter_m > 0.5 * s.size_m[axis])
-      table.problem("diameter_m",
-                    fmt::format("{} (the box is {} wide in {}: at least two diameters) enlarge size_m",
-                                s.diameter_m, s.size_m[axis], "xyz"[axis]));
+      table.problem("diameter_m", advised(fmt::format("{} (the box is {} wide in {}: at least two diameters)",
+                                                      s.diameter_m, s.size_m[axis], "xyz"[axis]),
+                                          "enlarge size_m"));
   s.count = static_cast<int>(table.integer({"count", "beds per solid fraction"}, 1, 1000, 1));
   s.sweeps = static_cast<int>(
       table.integer({"sweeps", "moves tried per sphere before a bed counts as random"}, 0, 1000000, 100));
@@ -67,12 +68,21 @@ void read_trace_settings(TomlTable table, GenerateSettings& s) {
 }
 
 void read_fit_settings(TomlTable table, GenerateSettings& s) {
-  const auto form =
-      table.choice({"form", "which correlation is fitted"}, {"both", "cubic", "transmittance"}, "both");
-  if (form != "transmittance") s.forms.push_back(CorrelationForm::cubic);
-  if (form != "cubic") s.forms.push_back(CorrelationForm::transmittance);
-  s.cutoff = table.number({"cutoff", "d* of the farthest pair that counts"},
-                          {.unit = "1", .min = 1.5, .max = largest_pp_cutoff, .why = "d* of a pair"}, 10);
+  auto names = correlation_form_names();
+  names.insert(names.begin(), "both");
+  names.push_back("paper");
+  const auto form = table.choice({"form", "which correlation is fitted"}, names, "both");
+  const double cutoff =
+      table.number({"cutoff", "d* of the farthest pair that counts"}, {.unit = "1", .min = 1.5, .max = largest_pp_cutoff, .why = "d* of a pair"}, 10);
+  for (const auto known : correlation_forms)
+    if (form == "both" || form == to_string(known)) {
+      FitOptions options;
+      options.form = known;
+      options.pp_cutoff = cutoff;
+      s.fits.emplace_back(to_string(known), options);
+    }
+  if (form == "paper") s.fits.emplace_back("paper", paper_choices());
+  if (form == "paper" && table.has("cutoff")) table.problem("cutoff", "is 20 in the paper's choices; leave it out");
 }
 
 }  // namespace
@@ -86,7 +96,12 @@ GenerateSettings read_generate_settings(TomlDocument& document) {
   auto root = document.root();
   GenerateSettings settings;
   settings.title = root.string({"title", "what the table will be called"}, "");
-  read_snapshot_settings(root.table({"snapshots", "The random beds that are traced"}), settings);
+  auto packed = root.table({"snapshots", "The random beds that are traced"});
+  auto flow = root.table({"flow", "In place of [snapshots]: the flows whose snapshots are traced"});
+  if (packed.present() && flow.present())
+    document.problem("flow", advised("[snapshots] and [flow] are both there (packings, or flows)", "keep one"));
+  if (flow.present()) settings.flow = read_flow_settings(flow, document.folder());
+  if (packed.present() || !flow.present()) read_snapshot_settings(packed, settings);
   read_trace_settings(root.table({"trace", "How they are traced"}), settings);
   read_fit_settings(root.table({"fit", "What is fitted"}), settings);
   document.finish();
@@ -116,6 +131,12 @@ std::string snapshot_name(const GenerateSettings& settings, double solid_fractio
 
 std::string traced_name(const GenerateSettings& settings, double solid_fraction, int number) {
   return name_of(solid_fraction, number, trace_dependencies(settings));
+}
+
+std::string traced_name(const GenerateSettings& s, const std::filesystem::path& snapshot) {
+  const auto depends = fmt::format("{} trace {} {} {} {}", std::filesystem::absolute(snapshot).string(),
+                                   view_factor_version, to_string(s.trace.method), s.trace.rays, s.trace.seed);
+  return fmt::format("{}_{:08x}", snapshot.stem().string(), fingerprint(depends));
 }
 
 }  // namespace granrad

@@ -6,6 +6,7 @@
 
 #include "dem/bed/bed.h"
 #include "fit/fitting/fit_correlation.h"
+#include "fit/vfgen/flow_snapshots.h"
 #include "fit/vfgen/trace_snapshot.h"
 
 namespace granrad {
@@ -27,25 +28,26 @@ class TomlDocument;
 ///   method = "lines" | "embree"
 ///   rays = 10000                     # per particle
 ///   [fit]
-///   form = "both" | "cubic" | "transmittance"
+///   form = "both" | "cubic" | "transmittance" | "paper"   # paper: see paper_choices (fit_correlation.h)
 ///   cutoff = 10
 ///
-/// Snapshots are equilibrated hard-sphere fluids. For the microstructure of a flow (it matters above a
-/// solid fraction of 0.37: 2 to 20 % in flux) run the flow and give its frames to vfgen trace and vfgen fit.
+/// [snapshots]: equilibrated hard-sphere fluids. [flow] in its place (flow_snapshots.h): snapshots of flows,
+/// whose microstructure matters above a solid fraction of 0.37 (2 to 20 % in flux).
 ///
-/// Written to the folder: snapshots/*.hdf, traced/*.h5, cubic.toml, transmittance.toml with their .html
-/// reports. The names of snapshots and traced files carry a fingerprint of every setting they depend on: what
-/// is there already is kept, so that an interrupted run goes on and a refit never retraces.
+/// Written to the folder: snapshots/*.hdf or runs/*, traced/*.h5, and for each form FORM.toml with its page
+/// FORM.html and what vfgen check finds in FORM.check.txt. The names of runs, snapshots and traced files carry a
+/// fingerprint of every setting they depend on: what is there already is kept, so that an interrupted command
+/// goes on and a refit never retraces.
 struct GenerateSettings {
   std::string title;
   std::vector<double> solid_fractions;
   Vec3 size_m;
   double diameter_m = 0;
   int count = 1, sweeps = 100;
+  FlowSettings flow;
   std::uint64_t seed = 1;
   TraceSettings trace;
-  std::vector<CorrelationForm> forms;
-  double cutoff = 10;
+  std::vector<std::pair<std::string, FitOptions>> fits;  ///< name of the table, and how it is fitted
 };
 
 /// Throws IoError, or InputError with every problem located.
@@ -60,5 +62,7 @@ Bed packed_bed(const GenerateSettings& settings, double solid_fraction, int numb
 std::string snapshot_name(const GenerateSettings& settings, double solid_fraction, int number);
 /// The same for its traced file.
 std::string traced_name(const GenerateSettings& settings, double solid_fraction, int number);
+/// Of a snapshot that was not packed: "f_000350000_9f86d081", with a fingerprint of its path and the trace.
+std::string traced_name(const GenerateSettings& settings, const std::filesystem::path& snapshot);
 
 }  // namespace granrad

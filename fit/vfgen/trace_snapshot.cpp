@@ -75,37 +75,30 @@ Box unbounded() {
   return {{-1e30, -1e30, -1e30}, {1e30, 1e30, 1e30}};
 }
 
-/// Surface numbers of the walls of these names.
-std::vector<std::int32_t> walls_named(const Enclosure& enclosure, const std::vector<std::string>& names) {
+std::string names_of(const std::vector<Wall>& walls) {
+  std::string names;
+  for (const Wall& wall : walls) names += (names.empty() ? "" : ", ") + wall.name;
+  return names;
+}
+
+/// Number of the wall of this name, or -1.
+std::ptrdiff_t wall_named(const Enclosure& enclosure, const std::string& name) {
+  const auto at = std::find_if(enclosure.walls.begin(), enclosure.walls.end(),
+                               [&](const Wall& wall) { return wall.name == name; });
+  return at == enclosure.walls.end() ? -1 : at - enclosure.walls.begin();
+}
+
+/// Surface numbers of walls that are there.
+std::vector<std::int32_t> surfaces_of(const Enclosure& enclosure, const std::vector<std::string>& names) {
   std::vector<std::int32_t> found;
-  std::vector<std::string> problems;
-  std::string known;
-  for (const Wall& wall : enclosure.walls) known += (known.empty() ? "" : ", ") + wall.name;
-  for (const std::string& name : names) {
-    const auto at = std::find_if(enclosure.walls.begin(), enclosure.walls.end(),
-                                 [&](const Wall& wall) { return wall.name == name; });
-    if (at == enclosure.walls.end())
-      problems.push_back(fmt::format("--hot-walls: {} (no such wall; there are: {})", name,
-                                     known.empty() ? "none, add --box" : known));
-    else
-      found.push_back(static_cast<std::int32_t>(enclosure.sphere_count()) +
-                      static_cast<std::int32_t>(at - enclosure.walls.begin()));
-  }
-  if (!problems.empty()) throw InputError(problems);
+  for (const std::string& name : names)
+    found.push_back(static_cast<std::int32_t>(enclosure.sphere_count()) +
+                    static_cast<std::int32_t>(wall_named(enclosure, name)));
   return found;
 }
 
-void refuse_contradictions(const Enclosure& enclosure, const TraceSettings& settings, bool grey) {
-  std::vector<std::string> problems;
-  if (settings.method == TraceMethod::lines && grey)
-    problems.emplace_back(
-        "--emissivity: lines trace black surfaces (a path of reflections is no straight line) use "
-        "--method embree");
-  if (settings.method == TraceMethod::lines && settings.sampling == Sampling::plain)
-    problems.emplace_back("--sampling: random (lines have a sequence of their own) use --method embree");
-  if (enclosure.sphere_count() == 0 && (settings.error > 0 || !settings.hot_walls.empty()))
-    problems.emplace_back("--error: no particles (the stated errors are theirs) use --rays");
-  if (!problems.empty()) throw InputError(problems);
+bool is_grey(const TraceSettings& settings) {
+  return settings.emissivity || settings.wall_emissivity;
 }
 
 /// The lines of the rays asked for, as a run traces them; of an error asked for, a first round of few.
@@ -183,13 +176,13 @@ void restore_file_order(Enclosure& enclosure, const std::vector<std::size_t>& fi
 std::string check_overlaps(const Bed& bed, const Enclosure& enclosure, const std::string& file) {
   const Overlaps overlaps = find_overlaps(bed, enclosure.particle);
   if (overlaps.same_place.count > 0)
-    throw InputError(
-        fmt::format("{}: {} are in the same place (each hides the other from every ray) keep one of each",
-                    file, describe(bed, overlaps.same_place, overlaps.all)));
+    throw InputError(advised(fmt::format("{}: {} are in the same place (each hides the other from every ray)",
+                                         file, describe(bed, overlaps.same_place, overlaps.all)),
+                             "keep one of each"));
   if (overlaps.deep.count == 0) return "";
   return fmt::format(
-      "warning: {}: {} overlap by more than half a radius (no packing does: check the radius, the unit of "
-      "length, and for particles given twice)",
+      "warning: {}: {} overlap by more than half a radius (no packing does); check the radius, the unit of "
+      "length, and for particles given twice",
       file, describe(bed, overlaps.deep, overlaps.all));
 }
 
@@ -222,15 +215,39 @@ SnapshotChoice parse_step(const std::string& text) {
   return choice;
 }
 
+void require_traceable(const Enclosure& enclosure, const TraceSettings& settings,
+                       const std::string& snapshot) {
+  std::vector<std::string> problems;
+  const auto problem = [&](const std::string& cause, const std::string& advice) {
+    problems.push_back(advised(cause, advice));
+  };
+  if (enclosure.sphere_count() == 0 && enclosure.walls.empty())
+    problem(snapshot + ": no surface to trace (neither particles nor walls)", "add walls with --box");
+  if (settings.method == TraceMethod::lines && is_grey(settings))
+    problem("--emissivity: lines trace black surfaces (a path of reflections is no straight line)",
+            "use --method embree");
+  if (settings.method == TraceMethod::lines && settings.sampling == Sampling::plain)
+    problem("--sampling: random (lines have a sequence of their own)", "use --method embree");
+  if (enclosure.sphere_count() == 0 && (settings.error > 0 || !settings.hot_walls.empty()))
+    problem("--error: " + snapshot + " has no particles (the stated errors are theirs)", "use --rays");
+  for (const std::string& name : settings.hot_walls)
+    if (wall_named(enclosure, name) < 0)
+      problem(fmt::format("--hot-walls: {} (no such wall; there are: {})", name,
+                          enclosure.walls.empty() ? "none" : names_of(enclosure.walls)),
+              enclosure.walls.empty() ? "add --box" : "name one of them");
+  if (!problems.empty()) throw InputError(problems);
+}
+
 Box parse_box(const std::string& text) {
   const auto colon = text.find(':');
   const auto size = parse_vec3(text.substr(0, colon));
   const auto origin = colon == std::string::npos ? Vec3{} : parse_vec3(text.substr(colon + 1));
   if (!size || !origin)
-    throw InputError(
-        fmt::format("--box: {} (not X,Y,Z or X,Y,Z:x0,y0,z0 in metres) try 0.010,0.004,0.050", text));
+    throw InputError(advised(fmt::format("--box: {} (not X,Y,Z or X,Y,Z:x0,y0,z0 in metres)", text),
+                             "try 0.010,0.004,0.050"));
   if (!(size->x > 0 && size->y > 0 && size->z > 0))
-    throw InputError(fmt::format("--box: {} (sizes must be positive) try 0.010,0.004,0.050", text));
+    throw InputError(
+        advised(fmt::format("--box: {} (sizes must be positive)", text), "try 0.010,0.004,0.050"));
   return {*origin, *origin + *size};
 }
 
@@ -243,8 +260,9 @@ SnapshotEnclosure read_enclosure(const std::filesystem::path& snapshot, const En
   const bool own_walls = !bed.walls.empty();
   if (own_walls && settings.box)
     throw InputError(
-        fmt::format("--box: {} has walls of its own (two sets of walls would hide each other) drop --box",
-                    snapshot.string()));
+        advised(fmt::format("--box: {} has walls of its own (two sets of walls would hide each other)",
+                            snapshot.string()),
+                "drop --box"));
   SnapshotEnclosure result;
   result.note = read.note;
   if (!settings.stl.empty()) result.meshes = add_meshes(bed, settings.stl);
@@ -257,9 +275,8 @@ SnapshotEnclosure read_enclosure(const std::filesystem::path& snapshot, const En
 }
 
 ViewFactorFile trace(const Enclosure& enclosure, const TraceSettings& settings, const std::string& origin) {
-  const bool grey = settings.emissivity || settings.wall_emissivity;
-  refuse_contradictions(enclosure, settings, grey);
-  const auto hot_walls = walls_named(enclosure, settings.hot_walls);
+  require_traceable(enclosure, settings, origin);
+  const auto hot_walls = surfaces_of(enclosure, settings.hot_walls);
   ViewFactorFile traced;
   traced.enclosure = enclosure;
   traced.method = to_string(settings.method);
@@ -270,7 +287,7 @@ ViewFactorFile trace(const Enclosure& enclosure, const TraceSettings& settings, 
   traced.sampling = settings.method == TraceMethod::lines  ? "lines"
                     : settings.sampling == Sampling::sobol ? "sobol"
                                                            : "random";
-  if (grey) {
+  if (is_grey(settings)) {
     traced.emissivity = surface_emissivities(enclosure, settings);
     traced.counts = trace_total_exchange(enclosure, traced.emissivity, embree_options(settings, hot_walls),
                                          &traced.spent);

@@ -85,7 +85,7 @@ void add_trace(CLI::App& app, Body& body) {
       ->check(number_in(1e-6, 1));
   sub.add_option("--box", text->box,
                  "six black walls: X,Y,Z in metres, corner at the origin or at :x0,y0,z0");
-  sub.add_option("--radius", command->enclosure.radius_m, "radius in metres, for files without one")
+  sub.add_option("--radius", command->enclosure.radius_m, "radius in metres, only for files without one")
       ->check(number_in(1e-12, 1e6));
   sub.add_option("--step", text->step,
                  "of files of several snapshots: first, last, all or the number of a step")
@@ -111,31 +111,69 @@ void add_trace(CLI::App& app, Body& body) {
   });
 }
 
+/// Options of a fit as text, until they are checked.
+struct FitText {
+  std::string form = "cubic", pairs = "all", wall_distance = "centre_to_plane_over_d", choices = "own";
+};
+
+/// The paper's choices, unless an option says otherwise.
+FitOptions fit_options(const CLI::App& sub, const FitText& text, FitOptions given) {
+  const bool paper = text.choices == "paper";
+  FitOptions options = paper ? paper_choices() : FitOptions{};
+  const auto asked = [&](const char* option) { return !paper || sub.count(option) > 0; };
+  if (asked("--form")) options.form = correlation_form(text.form);
+  if (asked("--pairs")) options.visible_only = text.pairs == "visible";
+  if (asked("--cutoff")) options.pp_cutoff = given.pp_cutoff;
+  if (asked("--fit-walls")) options.walls = given.walls;
+  if (asked("--wall-reach")) options.pw_reach = given.pw_reach;
+  if (asked("--wall-distance"))
+    options.pw_distance = text.wall_distance == "h_plus_r_over_d" ? WallDistance::h_plus_r_over_d
+                                                                  : WallDistance::centre_to_plane_over_d;
+  if (options.pw_distance == WallDistance::h_plus_r_over_d && !takes_wall_distance_from_surface(options.form))
+    throw InputError(advised(
+        fmt::format("--wall-distance: h_plus_r_over_d (form {} is defined for h/d)", to_string(options.form)),
+        "use --wall-distance centre_to_plane_over_d"));
+  return options;
+}
+
 void add_fit(CLI::App& app, Body& body) {
   const auto command = std::make_shared<FitCommand>();
-  const auto form = std::make_shared<std::string>("cubic"), pairs = std::make_shared<std::string>("all");
+  const auto text = std::make_shared<FitText>();
   auto& sub = *app.add_subcommand("fit", "Correlation table from traced view factors");
   sub.add_option("FILE", command->files, "HDF5 files of vfgen trace; equal solid fractions become one row")
       ->required();
   sub.add_option("-o,--output", command->output, "table, TOML")->required();
-  sub.add_option("--form", *form,
+  sub.add_option("--form", text->form,
                  "cubic: polynomial in 1/d*; transmittance: exact factor times exp(-a (d*-1)^b)")
-      ->check(CLI::IsMember({"cubic", "transmittance"}))
+      ->check(CLI::IsMember(correlation_form_names()))
       ->capture_default_str();
   sub.add_option("--report", command->report, "HTML page of the fit");
   sub.add_option("--cutoff", command->options.pp_cutoff, "largest d* of a pair")
       ->check(number_in(1.5, largest_pp_cutoff))
       ->capture_default_str();
-  sub.add_option("--pairs", *pairs, "all: invisible pairs count as F = 0; visible: they are left out")
+  sub.add_option("--pairs", text->pairs, "all: invisible pairs count as F = 0; visible: they are left out")
       ->check(CLI::IsMember({"all", "visible"}))
       ->capture_default_str();
   sub.add_option("--fit-walls", command->options.walls,
-                 "names of the walls F_pw is fitted on; default: the largest")
+                 "names of the walls F_pw is fitted on, or all; default: the largest")
       ->delimiter(',');
-  sub.callback([&body, command, form, pairs] {
-    command->options.form = *form == "cubic" ? CorrelationForm::cubic : CorrelationForm::transmittance;
-    command->options.visible_only = *pairs == "visible";
-    body = [command](Verbosity verbosity) { return run_fit(*command, verbosity); };
+  sub.add_option("--wall-distance", text->wall_distance, "what d* of a wall is (cubic only: h_plus_r_over_d)")
+      ->check(CLI::IsMember({"centre_to_plane_over_d", "h_plus_r_over_d"}))
+      ->capture_default_str();
+  sub.add_option("--wall-reach", command->options.pw_reach,
+                 "walls farther than this h/d are left out of the fit")
+      ->check(number_in(1, largest_pw_cutoff))
+      ->capture_default_str();
+  sub.add_option("--choices", text->choices,
+                 "paper: cubic, all pairs, --cutoff 20, --fit-walls all, --wall-distance h_plus_r_over_d, "
+                 "--wall-reach 20, where no option says otherwise")
+      ->check(CLI::IsMember({"own", "paper"}))
+      ->capture_default_str();
+  sub.callback([&body, &sub, command, text] {
+    body = [&sub, command, text](Verbosity verbosity) {
+      command->options = fit_options(sub, *text, command->options);
+      return run_fit(*command, verbosity);
+    };
   });
 }
 
@@ -187,7 +225,9 @@ int run(int argc, char** argv) {
   app.fallthrough();
   bool quiet = false, verbose = false;
   auto* q = app.add_flag("-q,--quiet", quiet, "only results and errors");
-  app.add_flag("-v,--verbose", verbose, "also say how long it took and how much memory")->excludes(q);
+  app.add_flag("-v,--verbose", verbose,
+               "also the settings of a trace, coefficients of a fit, curves of a check; time and memory")
+      ->excludes(q);
   Body body;
   add_trace(app, body);
   add_fit(app, body);

@@ -1,32 +1,15 @@
 #include <fmt/core.h>
 
-#include <algorithm>
-
 #include "dem/base/error.h"
 #include "dem/base/program.h"
 #include "fit/fitting/fit_report.h"
+#include "fit/fitting/fit_table.h"
 #include "fit/vfgen/vfgen_commands.h"
+#include "fit/vfgen/view_factor_samples.h"
 
 namespace granrad {
 
 namespace {
-
-std::vector<SampleSet> read_samples(const FitCommand& command, bool quiet) {
-  std::vector<SampleSet> samples;
-  Progress progress("reading", static_cast<double>(command.files.size()), quiet || command.files.size() == 1);
-  for (const auto& file : command.files) {
-    const auto traced = read_view_factors(file);
-    if (std::any_of(traced.emissivity.begin(), traced.emissivity.end(), [](double e) { return e != 1; }))
-      throw InputError(
-          fmt::format("{}: holds total exchange areas of grey surfaces (a table is fitted to view "
-                      "factors) trace without --emissivity",
-                      file.string()));
-    samples.push_back(
-        make_samples(traced.enclosure, traced.counts, command.options.pp_cutoff, file.string()));
-    progress.update(static_cast<double>(samples.size()));
-  }
-  return samples;
-}
 
 std::string joined(const std::vector<std::filesystem::path>& files) {
   std::string all;
@@ -34,36 +17,71 @@ std::string joined(const std::vector<std::filesystem::path>& files) {
   return all;
 }
 
+void print_rows(const std::vector<RowFit>& rows) {
+  fmt::print("{:>14} {:>9} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "solid fraction", "snapshots",
+             "pp RMSE", "scatter", "held out", "left out", "pw RMSE", "scatter", "row sum-1");
+  const auto known = [](double rmse) { return rmse > 0 ? fmt::format("{:.3e}", rmse) : std::string("-"); };
+  for (const auto& row : rows)
+    fmt::print("{:14.4f} {:9} {:10.3e} {:10.3e} {:>10} {:>10} {:10.3e} {:10.3e} {:+10.4f}\n",
+               row.row.solid_fraction, row.origins.size(), row.pp.rmse, row.pp.scatter,
+               known(row.pp.held_out_rmse), known(row.pp.left_out_rmse), row.pw.rmse, row.pw.scatter,
+               row.row.statistics.closure_mean);
+}
+
+/// Verbose: every coefficient with its error.
+void print_coefficients(const CorrelationTable& table) {
+  for (const auto& row : table.rows)
+    for (const auto partner : {Partner::sphere, Partner::wall}) {
+      const bool pairs = partner == Partner::sphere;
+      const auto names = coefficient_names(table.form, partner);
+      const auto& value = pairs ? row.pp : row.pw;
+      const auto& error = pairs ? row.statistics.pp_standard_error : row.statistics.pw_standard_error;
+      std::string line = fmt::format("  {:.4f} {}", row.solid_fraction, pairs ? "pp" : "pw");
+      for (std::size_t k = 0; k < names.size(); ++k)
+        line += fmt::format("  {} = {:.5g} +- {:.2g}", names[k], value[k], error[k]);
+      fmt::print("{}\n", line);
+    }
+}
+
+void describe_table(const FitCommand& command, CorrelationTable& table) {
+  const FitOptions& options = command.options;
+  table.title = fmt::format("View factors of a bed of equal spheres, {} form", to_string(options.form));
+  table.name = command.output.string();
+  const std::string walls = options.walls.empty()       ? "the largest walls"
+                            : options.walls[0] == "all" ? "all walls"
+                                                        : "chosen walls";
+  const std::string reach =
+      options.pw_reach < largest_pw_cutoff ? fmt::format(" with h < {:g} d", options.pw_reach) : "";
+  table.provenance = {
+      {"method", fmt::format("unweighted least squares over {} pairs with d* < {:g}; F_pw on {}{}",
+                             options.visible_only ? "visible" : "all", options.pp_cutoff, walls, reach)},
+      {"inputs", joined(command.files)},
+      {"created_by", fmt::format("vfgen {} ({})", program_version(), program_git_sha())}};
+}
+
 }  // namespace
 
 int run_fit(const FitCommand& command, Verbosity verbosity) {
-  const auto groups = grouped_by_solid_fraction(read_samples(command, verbosity == Verbosity::quiet));
-  std::vector<RowFit> rows;
-  if (verbosity != Verbosity::quiet)
-    fmt::print("{:>14} {:>9} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "solid fraction", "snapshots",
-               "pp RMSE", "scatter", "held out", "pw RMSE", "scatter", "row sum-1");
-  for (const auto& group : groups) {
-    rows.push_back(fit_row(group, command.options));
-    const auto& row = rows.back();
-    if (verbosity != Verbosity::quiet)
-      fmt::print("{:14.4f} {:9} {:10.3e} {:10.3e} {:10.3e} {:10.3e} {:10.3e} {:+10.4f}\n",
-                 row.row.solid_fraction, group.size(), row.pp.rmse, row.pp.scatter, row.pp.held_out_rmse,
-                 row.pw.rmse, row.pw.scatter, row.row.statistics.closure_mean);
-  }
-  auto table = make_table(rows, command.options);
-  table.title =
-      fmt::format("View factors of a bed of equal spheres, {} form", to_string(command.options.form));
-  table.name = command.output.string();
-  table.provenance = {
-      {"method", fmt::format("unweighted least squares over {} pairs with d* < {:g}",
-                             command.options.visible_only ? "visible" : "all", command.options.pp_cutoff)},
-      {"inputs", joined(command.files)},
-      {"created_by", fmt::format("vfgen {} ({})", program_version(), program_git_sha())}};
-  write_correlation(command.output, table);
-  if (!command.report.empty()) write_fit_report(command.report, table, rows);
-  if (verbosity != Verbosity::quiet)
-    fmt::print("{}{}\n", command.output.string(),
-               command.report.empty() ? "" : fmt::format(", report in {}", command.report.string()));
+  const auto files = look_at(command.files);
+  std::vector<double> fractions;
+  for (const auto& file : files) fractions.push_back(file.solid_fraction);
+  const auto groups = grouped_by_solid_fraction(fractions);
+  Progress progress("fitting", 1, verbosity == Verbosity::quiet || files.size() == 1);
+  auto fit = fit_table(
+      groups.size(), [&](std::size_t k) { return read_samples(files, groups[k], command.options.pp_cutoff); },
+      command.options, [&](double part) { progress.update(part); });
+  progress.finish();
+  describe_table(command, fit.table);
+  write_correlation(command.output, fit.table);
+  if (!command.report.empty()) write_fit_report(command.report, fit.table, fit.rows);
+  for (const auto& row : fit.rows)
+    if (const auto warning = snapshot_warning(row.row.solid_fraction, row.origins.size()); !warning.empty())
+      fmt::print(stderr, "warning: {}\n", warning);
+  if (verbosity == Verbosity::quiet) return exit_ok;
+  print_rows(fit.rows);
+  if (verbosity == Verbosity::verbose) print_coefficients(fit.table);
+  fmt::print("{}{}\n", command.output.string(),
+             command.report.empty() ? "" : fmt::format(", report in {}", command.report.string()));
   return exit_ok;
 }
 

@@ -37,12 +37,6 @@ std::vector<Job> snapshots_to_trace(const TraceCommand& command) {
   return jobs;
 }
 
-void require_surfaces(const Enclosure& enclosure, const std::filesystem::path& snapshot) {
-  if (enclosure.sphere_count() == 0 && enclosure.walls.empty())
-    throw InputError(fmt::format("{}: no surface to trace (neither particles nor walls) add walls with --box",
-                                 snapshot.string()));
-}
-
 /// What would end a command after hours of tracing, found before: throws IoError.
 void require_files(const TraceCommand& command) {
   std::string missing;
@@ -83,34 +77,65 @@ ViewFactorFile trace_shown(const Enclosure& enclosure, TraceSettings settings, c
   return trace(enclosure, settings, snapshot);
 }
 
+/// Every snapshot, read before the first is traced: what is wrong with any is said at once.
+std::vector<SnapshotEnclosure> read_all(const TraceCommand& command, const std::vector<Job>& jobs) {
+  std::vector<SnapshotEnclosure> all;
+  std::vector<std::string> problems;
+  for (const auto& job : jobs) try {
+      EnclosureSettings settings = command.enclosure;
+      settings.which = job.which;
+      all.push_back(read_enclosure(job.file, settings));
+      require_traceable(all.back().enclosure, command.trace, job.file.string());
+    } catch (const InputError& error) {
+      problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+    }
+  if (!problems.empty()) throw InputError(problems);
+  return all;
+}
+
+/// What a user should know of a snapshot before it is traced.
+void remark_on(const std::string& snapshot, const SnapshotEnclosure& read, Verbosity verbosity) {
+  if (!read.note.empty()) fmt::print(stderr, "note: {}\n", read.note);
+  if (read.left_out > 0)
+    fmt::print(stderr, "{}: {} particles with their centre outside the box were left out\n", snapshot,
+               read.left_out);
+  if (!read.overlaps.empty()) fmt::print(stderr, "{}\n", read.overlaps);
+  if (!read.meshes.empty() && verbosity != Verbosity::quiet) fmt::print(stderr, "{}\n", read.meshes);
+}
+
+void print_traced(const std::filesystem::path& file, const ViewFactorFile& traced, Verbosity verbosity) {
+  if (verbosity == Verbosity::quiet) return;
+  fmt::print("{}: {} spheres, {} walls; {}\n  {}\n", file.string(), traced.enclosure.sphere_count(),
+             traced.enclosure.walls.size(), self_check_line(traced.check), spent_line(traced));
+  if (verbosity != Verbosity::verbose) return;
+  const auto entries = traced.closed.value.size();
+  fmt::print(
+      "  method {}, sampling {}, seed {}; solid fraction {}; {} view factors; largest correction of a row by "
+      "closure {:.2g}\n",
+      traced.method, traced.sampling, traced.seed,
+      traced.enclosure.solid_fraction > 0 ? fmt::format("{:.4f}", traced.enclosure.solid_fraction)
+                                          : "not known",
+      entries, traced.closure_correction_max);
+}
+
 }  // namespace
 
 int run_trace(const TraceCommand& command, Verbosity verbosity) {
   if (command.output.extension() != ".h5")
-    throw InputError(
-        fmt::format("--output: {} (view factors are HDF5) name it FILE.h5", command.output.string()));
+    throw InputError(advised(fmt::format("--output: {} (view factors are HDF5)", command.output.string()),
+                             "name it FILE.h5"));
   require_files(command);
-  std::string failures;
   const auto jobs = snapshots_to_trace(command);
+  const auto snapshots = read_all(command, jobs);
+  std::string failures;
   for (std::size_t k = 0; k < jobs.size() && !interrupt_signal(); ++k) {
-    const auto& snapshot = jobs[k].file;
-    EnclosureSettings settings = command.enclosure;
-    settings.which = jobs[k].which;
-    const auto read = read_enclosure(snapshot, settings);
-    require_surfaces(read.enclosure, snapshot);
-    if (!read.note.empty()) fmt::print(stderr, "note: {}\n", read.note);
-    if (read.left_out > 0)
-      fmt::print(stderr, "{}: {} particles with their centre outside the box were left out\n",
-                 snapshot.string(), read.left_out);
-    if (!read.overlaps.empty()) fmt::print(stderr, "{}\n", read.overlaps);
-    if (!read.meshes.empty() && verbosity != Verbosity::quiet) fmt::print(stderr, "{}\n", read.meshes);
+    const std::string snapshot = jobs[k].file.string();
+    remark_on(snapshot, snapshots[k], verbosity);
     const auto traced =
-        trace_shown(read.enclosure, command.trace, snapshot.string(), verbosity == Verbosity::quiet);
+        trace_shown(snapshots[k].enclosure, command.trace, snapshot, verbosity == Verbosity::quiet);
     const auto file = numbered(command.output, k + 1, jobs.size());
     write_view_factors(file, traced);
-    if (verbosity != Verbosity::quiet)
-      fmt::print("{}: {} spheres, {} walls; {}\n  {}\n", file.string(), read.enclosure.sphere_count(),
-                 read.enclosure.walls.size(), self_check_line(traced.check), spent_line(traced));
+    print_traced(file, traced, verbosity);
     if (!traced.check.failed.empty()) failures += fmt::format("\n{}: {}", file.string(), traced.check.failed);
   }
   if (!failures.empty()) throw NumericalError("self-check failed:" + failures);

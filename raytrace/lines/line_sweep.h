@@ -28,31 +28,31 @@ namespace granrad {
 /// walls can meet is left out.
 struct LineOptions {
   int directions = 500;  ///< per replicate
-  double lines_per_disc =
-      12;              ///< mean number of lines through a small sphere (the 10 % quantile of the radii);
-                       ///< larger spheres get more in proportion to area. Work grows with the sum
+  /// Mean number of lines through a small sphere (the 10 % quantile of the radii); larger spheres get more in
+  /// proportion to area. Work grows with the sum.
+  double lines_per_disc = 12;
   int replicates = 4;  ///< independent randomisations, >= 2: the only honest error of low-discrepancy sets
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0: OpenMP's default; results do not depend on it
   /// > 0: `directions` grows until the stated error (stated_error.h) of counts or areas, or that of the
   /// particle heats, rms relative to the rms heat, falls below it.
   double target_error = 0;
-  std::vector<std::int32_t>
-      hot_walls{};     ///< surface numbers; empty: the error of particle-wall sums is stated
+  /// Surface numbers; empty: the error of particle-wall sums is stated.
+  std::vector<std::int32_t> hot_walls{};
   TraceWatch watch{};  ///< of counts and areas: progress of the present round, and whether to go on
   std::size_t memory_limit_bytes = std::size_t{4} << 30;  ///< of the counts; see LineReport::thinning_unit
 };
 
 /// What a sweep spent and found out about itself.
 struct LineReport {
-  std::int64_t ray_equivalents =
-      0;                       ///< line ends on surfaces, of all rounds: each is one ray of a ray tracer
+  /// Line ends on surfaces, of all rounds: each is one ray of a ray tracer.
+  std::int64_t ray_equivalents = 0;
   int directions = 0;          ///< per replicate, after target_error
   double spacing_m = 0;        ///< of the lines, h
   double estimated_error = 0;  ///< the quantity target_error bounds
-  int thinning_unit = 1;       ///< > 1: to respect the memory limit, pairs with fewer counts n were kept with
-      ///< probability n / unit and weight unit (unbiased; symmetric; rows rescaled by
-      ///< closure). 1: nothing was thinned
+  /// > 1: to respect the memory limit, pairs with fewer counts n were kept with probability n / unit and weight
+  /// unit (unbiased; symmetric; rows rescaled by closure). 1: nothing was thinned.
+  int thinning_unit = 1;
   int rounds = 0;  ///< of target_error; the last one is what is kept
 };
 

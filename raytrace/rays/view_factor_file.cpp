@@ -123,6 +123,7 @@ void write_snapshot(Hdf5Writer& out, const ViewFactorFile& content) {
   for (int axis = 0; axis < 3; ++axis)
     out.attribute("/snapshot", periodic_name[axis], std::vector<std::int64_t>{e.periodic[axis]});
   out.attribute("/snapshot", "origin", content.origin);
+  if (e.solid_fraction > 0) out.attribute("/snapshot", "solid_fraction", e.solid_fraction);
 }
 
 void write_origin(Hdf5Writer& out, const ViewFactorFile& content) {
@@ -251,6 +252,8 @@ Enclosure read_enclosure(const Hdf5Reader& in) {
   e.box = {box.at(0), box.at(1)};
   for (int axis = 0; axis < 3; ++axis)
     e.periodic[axis] = in.integer_attribute("/snapshot", periodic_name[axis]) != 0;
+  if (in.has_attribute("/snapshot", "solid_fraction"))
+    e.solid_fraction = in.real_attribute("/snapshot", "solid_fraction");
   return e;
 }
 

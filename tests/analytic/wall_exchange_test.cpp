@@ -18,7 +18,7 @@ Enclosure channel() {
 // Planted error: area of the source left out of the weight -> off by the ratio of the areas.
 TEST(WallExchange, OfAnEmptyChannelEqualsTheClosedForms) {
   const auto enclosure = channel();
-  const auto walls = wall_exchange(enclosure, 0);
+  const auto walls = wall_exchange(enclosure, SolidFractionField(0), 1);
   const double a[6] = {200e-6, 200e-6, 500e-6, 500e-6, 40e-6, 40e-6};
   const auto factor = [&](int v, int w) { return walls.value[v * 6 + w] / a[v]; };
   const auto exact = exact_empty_box({{0, 0, 0}, {0.010, 0.004, 0.050}});
@@ -33,7 +33,8 @@ TEST(WallExchange, OfNearPlatesFollowsBeersLaw) {
   Enclosure plates;
   const auto walls = box_walls({{0, 0, 0}, {1, 1, 1e-3}});
   plates.walls = {walls[4], walls[5]};
-  const auto exchange = wall_exchange(plates, 1e3);
+  const auto exchange =
+      wall_exchange(plates, SolidFractionField(0.4), 1e-3);  // extinction 1.5 phi / (1 - phi) / d = 1e3
   EXPECT_NEAR(exchange.value[1], 0.2193840, 1e-3);
   EXPECT_GT(exchange.opening[0], 0);  // the rim
   EXPECT_LT(exchange.opening[0], 0.01);

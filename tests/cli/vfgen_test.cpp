@@ -272,6 +272,35 @@ TEST_F(Vfgen, RefusesToFitGreyOrUnenclosedBeds) {
   EXPECT_FALSE(fs::exists(path("t.toml")));
 }
 
+// One snapshot is said, the same bed twice and a file whose self-check failed are refused, all at once.
+TEST_F(Vfgen, RefusesToFitTheSameBedTwiceOrAFailedTrace) {
+  std::string rows = "x,y,z,radius\n";
+  for (int k = 0; k < 60; ++k)
+    rows += std::to_string(0.001 * (k % 5) + 0.0007) + "," + std::to_string(0.001 * (k / 5 % 4) + 0.0006) +
+            "," + std::to_string(0.001 * (k / 20) + 0.0005 + 1e-5 * k) + ",0.0004\n";
+  const auto csv = write("bed.csv", rows);
+  const std::string trace = "-q trace " + csv + " --box 0.005,0.004,0.004 --rays 300 -o ";
+  ASSERT_EQ(vfgen(trace + path("a.h5")).code, 0);
+  ASSERT_EQ(vfgen(trace + path("b.h5") + " --seed 2").code, 0);
+  const auto twice = vfgen("fit " + path("a.h5") + " " + path("b.h5") + " -o " + path("t.toml"));
+  expect_says(twice, 2, "b.h5: the same bed as");
+  expect_says(twice, 2, "give each snapshot once");
+  EXPECT_FALSE(fs::exists(path("t.toml")));
+  const auto one = vfgen("fit " + path("a.h5") + " -o " + path("t.toml"));
+  expect_says(one, 0, "one snapshot (nothing is held out");
+  const auto refused = vfgen("trace " + csv + " --radius 0.0003 -o " + path("r.h5"));
+  expect_says(refused, 2, "has radii of its own; drop --radius");
+}
+
+TEST_F(Vfgen, RefusesATableWithoutEnd) {
+  std::ifstream in(source_dir + "/data/correlations/li_2024_printed.toml");
+  std::stringstream text;
+  text << in.rdbuf();
+  auto endless = text.str();
+  endless.replace(endless.find("pw_cutoff = 10"), 14, "pw_cutoff = 1e9");
+  expect_says(vfgen("check " + write("endless.toml", endless)), 2, "pw_cutoff = 1000000000");
+}
+
 TEST_F(Vfgen, ChecksThePrintedTableAndReportsItsBadRow) {
   const auto outcome = vfgen("check " + source_dir + "/data/correlations/li_2024_printed.toml");
   expect_says(outcome, 2, "solid fraction 0.02: F_pw((h + r)/d = 1.00) = 0.61");
@@ -279,7 +308,7 @@ TEST_F(Vfgen, ChecksThePrintedTableAndReportsItsBadRow) {
 }
 
 TEST_F(Vfgen, FindsOurOwnTablesSound) {
-  for (const char* table : {"granrad_hard_spheres", "granrad_hard_spheres_cubic"})
+  for (const char* table : {"granrad_hard_spheres", "granrad_hard_spheres_cubic", "granrad_moving_bed"})
     expect_says(vfgen("-q check " + source_dir + "/data/correlations/" + table + ".toml"), 0, "sound");
 }
 
@@ -320,6 +349,98 @@ rays = 300
                     " --form transmittance --report " + path("t.html")),
               0, "t.html");
   EXPECT_TRUE(fs::exists(path("t.html")));
+}
+
+/// A short plug of 0.5 mm spheres, dilute and fast: tens of milliseconds of residence.
+const char* short_plug = R"([scene]
+name = "short_plug"
+end_time_s = 0.1
+[material]
+density_kg_m3 = 2500
+specific_heat_J_kgK = 800
+conductivity_W_mK = 1
+youngs_modulus_Pa = 5e6
+poisson_ratio = 0.23
+restitution = 0.5
+friction = 0.3
+[particles]
+diameter_m = "0.8 mm"
+temperature_K = 300
+[box]
+size_m = [0.006, 0.004, 0.008]
+[walls.x_min]
+role = "adiabatic"
+[walls.x_max]
+role = "adiabatic"
+[walls.y_min]
+role = "adiabatic"
+[walls.y_max]
+role = "adiabatic"
+[walls.z_min]
+role = "adiabatic"
+[walls.z_max]
+role = "adiabatic"
+[feed]
+kind = "plug"
+solid_fraction = 0.2
+mass_flow_kg_s = "2 g/s"
+[dem]
+engine = "native"
+step_s = 1e-5
+[radiation]
+source = "paths"
+[output]
+every_s = 0.01
+)";
+
+// Runs a plug at two solid fractions until it is steady, traces and fits; a second call keeps runs and traces.
+// Planted error: the label of a row from the spheres whose centre is inside over the stretched box -> 0.18.
+TEST_F(Vfgen, GeneratesATableFromFlows) {
+  write("plug.toml", short_plug);
+  const auto config = write("flow.toml", R"(title = "plugs"
+[flow]
+scene = "plug*.toml"
+solid_fractions = [0.1, 0.2]
+seeds = 2
+snapshots = 2
+curve_error = 1
+every_s = 0.005
+[trace]
+rays = 300
+[fit]
+form = "transmittance"
+)");
+  const auto outcome = vfgen("generate " + config + " -o " + path("out"));
+  expect_says(outcome, 0, "transmittance.toml");
+  EXPECT_TRUE(fs::exists(path("out/transmittance.html")));
+  EXPECT_TRUE(fs::exists(path("out/transmittance.check.txt")));
+  const auto table = [&] {
+    std::stringstream text;
+    text << std::ifstream(path("out/transmittance.toml")).rdbuf();
+    return text.str();
+  };
+  const auto first = table();
+  const auto at = first.find("solid_fraction = 0.2");
+  EXPECT_NE(at, std::string::npos) << first;
+  EXPECT_NE(first.find("snapshots = 2"), std::string::npos) << first;
+  fs::path traced;
+  for (const auto& entry : fs::directory_iterator(path("out/traced"))) traced = entry.path();
+  const auto written = fs::last_write_time(traced);
+  EXPECT_EQ(vfgen("-q generate " + config + " -o " + path("out")).code, 0);
+  EXPECT_EQ(fs::last_write_time(traced), written);
+  EXPECT_EQ(table(), first);
+}
+
+TEST_F(Vfgen, GenerateSaysWhatIsWrongWithFlows) {
+  const auto config = write(
+      "flow.toml", "[flow]\nscene = \"none*.toml\"\nfolders = [\"x\"]\nsnapshots = 5\nmost_snapshots = 2\n");
+  const auto outcome = vfgen("generate " + config + " -o " + path("out"));
+  expect_says(outcome, 2, "flow.toml:2");
+  expect_says(outcome, 2, "give exactly one");
+  expect_says(outcome, 2, "most_snapshots");
+  write("bad.toml", std::string(short_plug) + "colour = 1\n");
+  const auto bad = write("bad_flow.toml", "[flow]\nscene = \"bad.toml\"\n");
+  expect_says(vfgen("generate " + bad + " -o " + path("out2")), 2, "ended with code 2");
 }
 
 /// Version 1 held one variance factor for all pairs, as a dataset.

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <memory>
 #include <sstream>
 
 #include "dem/base/error.h"
@@ -111,7 +112,7 @@ TEST(CorrelationSource, GivesTheSameBitsTwice) {
 TEST(CorrelationSource, GivesWhatIsMissingToAnOpening) {
   auto enclosure = bed(channel, 0.07, 4);
   enclosure.walls.erase(enclosure.walls.begin() + 5);  // z_max open
-  const auto x = correlation_exchange(printed(), 0.07)(enclosure, 0);
+  const auto x = correlation_exchange(printed(), {.solid_fraction = 0.07})(enclosure, 0);
   const std::size_t open = enclosure.open_surface();
   EXPECT_GT(x.pattern.row_begin[open + 1], x.pattern.row_begin[open]);
   for (std::size_t i = 0; i < open; ++i) EXPECT_EQ(entry(x, i, open), entry(x, open, i));
@@ -138,8 +139,53 @@ TEST(CorrelationSource, RefusesWhatATableCannotServe) {
   auto mesh = enclosure;
   mesh.walls[0].triangles = {{0, 1, 2}, {0, 2, 3}};
   EXPECT_THROW(source(mesh, 0), InputError);
-  EXPECT_THROW(source(bed(channel, 0.55, 3), 0), InputError);   // beyond the table's 0.48
-  EXPECT_THROW(source(bed(channel, 0.005, 3), 0), InputError);  // below its 0.02
+  EXPECT_THROW(source(bed(channel, 0.55, 3), 0), InputError);  // beyond the table's 0.48
+  EXPECT_NO_THROW(source(bed(channel, 0.005, 3), 0));          // below its 0.02: towards the empty box
+}
+
+// A lone sphere and six walls: the exact factors to the walls add up to 1, and the table holds none above.
+// Planted error: the bound of the wall 1/2 -> 1.4 near a corner.
+TEST(CorrelationSource, GivesALoneSphereNoMoreThanOne) {
+  Enclosure lone;
+  const Box box{{0, 0, 0}, {0.010, 0.004, 0.012}};
+  const auto walls = box_walls(box);
+  lone.walls.assign(walls.begin(), walls.end());
+  lone.radius_m = {0.0004};
+  lone.box = box;
+  for (const Vec3& place :
+       {Vec3{0.0004, 0.0004, 0.0004}, Vec3{0.005, 0.002, 0.006}, Vec3{0.0004, 0.002, 0.006}}) {
+    lone.centre_m = {place};
+    const auto x = correlation_exchange_areas(printed(), lone, {.solid_fraction = 0.02});
+    double sum = 0;
+    for (auto k = x.pattern.row_begin[0]; k < x.pattern.row_begin[1]; ++k) sum += x.value[k];
+    EXPECT_LE(sum / x.area_m2[0], 1 + 1e-12);
+    EXPECT_GT(sum / x.area_m2[0], 0.6);
+  }
+}
+
+// Rows of the walls by rays from the walls alone agree with those of a trace from every surface: the heat the
+// large walls give each slab of the bed, 5 sigma of 2e5 rays. Planted error: X divided by the area of the
+// sphere instead of multiplied by that of the wall.
+TEST(CorrelationSource, TracedWallsAgreeWithTheTracedBed) {
+  const auto enclosure = bed(channel, 0.25, 3);
+  const auto x = correlation_exchange_areas(printed(), enclosure,
+                                            {.wall_rows = WallRows::traced, .wall_rays = 400, .seed = 5});
+  TraceOptions options;
+  options.rays_per_particle = 400;
+  const auto counts = trace_view_factors(enclosure, options);
+  const auto all = close(one_way_estimate(counts), Closure::reciprocal, *std::make_unique<ClosureReport>());
+  const std::size_t n = enclosure.sphere_count();
+  for (const std::size_t wall : {n + 2, n + 3})
+    for (int slab = 0; slab < 3; ++slab) {
+      double few = 0, many = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        if (static_cast<int>(3 * enclosure.centre_m[i].z / 0.012) != slab) continue;
+        few += entry(x, wall, i);
+        many += entry(all, wall, i);
+      }
+      EXPECT_NEAR(few / many, 1, 0.03) << wall - n << " " << slab;
+    }
+  EXPECT_EQ(entry(x, n + 2, 0), entry(x, 0, n + 2));
 }
 
 /// One traced bed for the tests below: 1500 rays a particle, solid fraction 0.43, the whole channel.
@@ -210,8 +256,8 @@ TEST_F(TracedBed, ClosedTableGivesTheWallsTheirExchange) {
   const auto table = transmittance(0.43, 0.90599, 2.41152, 0.78038, 1.62776, 1.32989);  // the reference's fit
   const auto& enclosure = samples.enclosure;
   ClosureReport report;
-  const auto from_table =
-      close(correlation_exchange_areas(table, enclosure, 0.43), Closure::reciprocal, report);
+  const auto from_table = close(correlation_exchange_areas(table, enclosure, {.solid_fraction = 0.43}),
+                                Closure::reciprocal, report);
   const auto traced = close(one_way_estimate(counts), Closure::reciprocal, report);
   const std::size_t n = enclosure.sphere_count();
   for (const std::size_t wall : {n + 2, n + 3}) {

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "dem/base/error.h"
+#include "dem/base/random.h"
 #include "fit/correlation/unobstructed_pair.h"
 #include "raytrace/exact.h"
 #include "tests/source_dir.h"
@@ -53,6 +54,7 @@ TEST(PrintedTable, IsHeldWithinTheBounds) {
     EXPECT_EQ(c.pw(9.5, 0.5), 0);  // (h + r)/d = 10
   }
   EXPECT_EQ(Correlation(table, 0.02).pw(0.5, 0.5), 0.5);  // printed: 0.61
+  EXPECT_EQ(Correlation(table, 0.25).pw(0.6, 0.2), 0.2);  // printed: .43; this wall cannot hold more than .2
   EXPECT_EQ(Correlation(table, 0.43).pp(6), 0);           // printed: negative
 }
 
@@ -97,18 +99,47 @@ TEST(Correlation, OverlappingSpheresTakeTheValueAtContact) {
   EXPECT_EQ(c.pw(0.45, 0.5), c.pw(0.5, 0.5));
 }
 
-TEST(Correlation, InterpolatesLinearlyInTheSolidFraction) {
+TEST(Correlation, InterpolatesCubicsLinearly) {
+  const auto table = printed();
+  const Correlation low(table, 0.25), middle(table, 0.28), high(table, 0.31);
+  for (const double d : {1.0, 1.3, 2.0}) EXPECT_NEAR(middle.pp(d), 0.5 * (low.pp(d) + high.pp(d)), 1e-12);
+  EXPECT_NEAR(middle.pw(1.2, 0.45), 0.5 * (low.pw(1.2, 0.45) + high.pw(1.2, 0.45)), 1e-12);
+  EXPECT_NEAR(low.pp(1.7), Correlation(table, 0.25 + 1e-9).pp(1.7), 1e-9);
+}
+
+// ln a and b linear in logit(phi): by hand at the middle of 0.2 and 0.4. Planted error: linear in phi -> a =
+// 0.45 at 0.3.
+TEST(Correlation, InterpolatesTransmittancesInTheLogit) {
   const auto table = transmittance();
-  const Correlation low(table, 0.2), middle(table, 0.25), high(table, 0.4);
-  for (const double d : {1.0, 1.3, 2.0, 5.0})
-    EXPECT_NEAR(middle.pp(d), 0.75 * low.pp(d) + 0.25 * high.pp(d), 1e-15);
-  EXPECT_NEAR(middle.pw(1.2, 0.3), 0.75 * low.pw(1.2, 0.3) + 0.25 * high.pw(1.2, 0.3), 1e-15);
-  EXPECT_NEAR(Correlation(printed(), 0.25).pp(1.7), Correlation(printed(), 0.25 + 1e-9).pp(1.7), 1e-9);
+  const auto logit = [](double p) { return std::log(p / (1 - p)); };
+  const double t = (logit(0.3) - logit(0.2)) / (logit(0.4) - logit(0.2));
+  const double a = std::exp(std::log(0.2) + t * std::log(0.7 / 0.2)), b = 1.7 + t * 0.5;
+  const double t0 = 0.97 * std::pow(0.82 / 0.97, t), c = 0.6 * std::pow(1.5 / 0.6, t);
+  const Correlation middle(table, 0.3);
+  EXPECT_NEAR(middle.pp(3), exact_two_sphere(0.5, 0.5, 3) * std::exp(-a * std::pow(2, b)), 1e-7);
+  EXPECT_NEAR(middle.pw(1.5, 0.3), 0.3 * t0 * std::exp(-c), 1e-9);
+}
+
+// Below the first row: the empty box at 0, the row at its own solid fraction, continuous and falling between.
+// Planted error: the first row held below itself -> 0.7 of the exact factor at 0.
+TEST(Correlation, GoesToTheExactFactorsBelowTheFirstRow) {
+  for (const auto& table : {printed(), transmittance()}) {
+    const double first = table.rows[0].solid_fraction;
+    const Correlation empty(table, 0), dilute(table, 0.5 * first), row(table, first);
+    for (const double d : {1.0, 1.5, 2.0, 4.0, 8.0}) {
+      EXPECT_NEAR(empty.pp(d), unobstructed_pair(d), 1e-6);
+      EXPECT_LE(dilute.pp(d), empty.pp(d) * (1 + 1e-12));
+      EXPECT_GE(dilute.pp(d), std::min(row.pp(d), empty.pp(d)) * (1 - 1e-12));
+      EXPECT_NEAR(Correlation(table, first * (1 - 1e-9)).pp(d), row.pp(d), 1e-8);
+    }
+    EXPECT_NEAR(empty.pw(1.3, 0.37), 0.37, 1e-12);
+    EXPECT_NEAR(Correlation(table, first * (1 - 1e-9)).pw(1.3, 0.37), row.pw(1.3, 0.37), 1e-8);
+  }
 }
 
 TEST(Correlation, RefusesToExtrapolateAndStatesItsBounds) {
   const auto table = printed();
-  for (const double phi : {0.0, -0.1, 0.0195, 0.4897, 0.6, std::nan("")}) {
+  for (const double phi : {-0.1, 0.505, 0.6, std::nan("")}) {
     try {
       Correlation(table, phi);
       ADD_FAILURE() << phi << " accepted";
@@ -116,14 +147,32 @@ TEST(Correlation, RefusesToExtrapolateAndStatesItsBounds) {
       const std::string text = error.what();
       EXPECT_NE(text.find("0.02 to 0.48"), std::string::npos) << text;
       EXPECT_NE(text.find("li_2024_printed.toml"), std::string::npos) << text;
+      EXPECT_NE(text.find("vfgen generate"), std::string::npos) << text;
     }
   }
 }
 
-TEST(Correlation, ServesTwoPercentBeyondItsEndsWithTheEndRow) {
+TEST(Correlation, ServesFivePercentBeyondItsEndWithTheLastRow) {
   const auto table = printed();
-  EXPECT_EQ(Correlation(table, 0.0197).pp(2), Correlation(table, 0.02).pp(2));
-  EXPECT_EQ(Correlation(table, 0.489).pp(2), Correlation(table, 0.48).pp(2));
+  EXPECT_EQ(Correlation(table, 0.503).pp(2), Correlation(table, 0.48).pp(2));
+}
+
+// A million random arguments, every table and solid fraction: nothing beyond the bounds. Planted error: the
+// bound of the wall 1/2 instead of its own factor -> one in forty beyond.
+TEST(Correlation, StaysWithinTheBoundsOfEveryArgument) {
+  int beyond = 0;
+  std::uint64_t k = 0;
+  for (const auto& table : {printed(), transmittance()})
+    for (int level = 0; level < 50; ++level) {
+      const Correlation c(table, table.rows.back().solid_fraction * level / 49.0);
+      for (int i = 0; i < 10000; ++i, ++k) {
+        const auto u = random_uniform2(5, 1, k);
+        const double d = 0.95 + 11 * u[0], exact = 0.5 * u[1];
+        const double pp = c.pp(d), pw = c.pw(0.4 + 10 * u[0], exact);
+        beyond += !(pp >= 0 && pp <= unobstructed_pair(d) + 1e-6) + !(pw >= 0 && pw <= exact);
+      }
+    }
+  EXPECT_EQ(beyond, 0);
 }
 
 }  // namespace
