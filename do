@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# ./do demo | test | test-long | gates | tidy | format | docs | package | bench [trace|dem|heat|case] [--quick]
+# ./do demo | test | test-long | gates | tidy | format | docs | package | bench [trace|dem|heat|case|front] [--quick]
 # Each command takes a bare Debian 12 all the way: missing packages, configuration, build, run.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
@@ -42,7 +42,9 @@ usage() {
   fuzz-files [SECONDS]
               damaged files of each kind that is read, SECONDS each (default 60): 0 findings is the aim
   bench       speed against error, side by side with LIGGGHTS, LAMMPS, plain Embree and dense LU;
-              case: the whole moving bed of the paper beside LIGGGHTS' flow alone
+              case: the whole moving bed of the paper beside LIGGGHTS' flow alone;
+              front: every exchange source with a ladder of rays
+  hard-cases  makes docs/hard-cases.md: every exchange source on the cases that break others
 EOF
 }
 
@@ -171,12 +173,12 @@ EOF
     which=() options=()
     for word in "$@"; do
       case $word in
-        trace | dem | heat | case) which+=("$word") ;;
+        trace | dem | heat | case | front) which+=("$word") ;;
         --quick) options+=(--quick) ;;
         *) usage >&2; exit 2 ;;
       esac
     done
-    ((${#which[@]})) || which=(trace dem heat case)
+    ((${#which[@]})) || which=(trace dem heat case front)
     set_up
     install_missing liggghts lammps
     for name in "${which[@]}"; do
@@ -204,6 +206,12 @@ EOF
         -artifact_prefix="$fuzz/found/$kind-" "$fuzz/found/$kind" "$root/tests/fuzz/corpus/$kind"
     done
     say "no findings"
+    ;;
+  hard-cases)
+    set_up
+    build granrun
+    python3 "$root/tests/bench/hard_cases.py" "$build/bin/granrun" \
+      "$root/data/correlations/granrad_hard_spheres.toml" "$root/docs/hard-cases.md" "${@:2}"
     ;;
   -h | --help | help) usage ;;
   *) usage >&2; exit 2 ;;
