@@ -117,12 +117,38 @@ def particles(r, scene):
         radius = d / 2 * ratio ** r.uniform(-1, 0)
         place = [r.uniform(low[k] + (0 if "xyz"[k] in scene["periodic"] else radius),
                            low[k] + size[k] - (0 if "xyz"[k] in scene["periodic"] else radius)) for k in range(3)]
-        if any(distance(scene, place, p["place"]) < (radius + p["radius"]) * 0.9995 for p in placed):
+        if r.random() < 0.6:  # heat by contact needs contacts
+            place = touching(r, scene, place, radius, placed)
+            if place is None:
+                continue
+        if any(distance(scene, place, p["place"]) < (radius + p["radius"]) * 0.9994 for p in placed):
             continue
         placed.append({"place": place, "radius": radius, "material": r.randrange(len(scene["materials"])),
                        "T": scene["particle_K"] if scene["isothermal"] else r.choice([scene["particle_K"], r.uniform(250, 1500)]),
                        "v": [r.gauss(0, .02) for _ in range(3)] if not scene["frozen"] and r.random() < .5 else [0.0] * 3})
     scene["particles"] = placed
+
+
+def touching(r, scene, place, radius, placed):
+    """The place moved until it touches a wall or another particle, overlapping by a thousandth; None outside."""
+    faces = [face for face in scene["walls"] if scene["walls"][face].get("contact", True)]
+    if faces and (not placed or r.random() < 0.5):
+        face = r.choice(faces)
+        k = "xyz".index(face[0])
+        place[k] = scene["low"][k] + (0.999 * radius if face.endswith("min") else scene["size"][k] - 0.999 * radius)
+        return place
+    if not placed:
+        return place
+    other = r.choice(placed)
+    way = [a - b for a, b in zip(place, other["place"])]
+    length = math.sqrt(sum(w * w for w in way)) or 1.0
+    apart = 0.9995 * (radius + other["radius"])
+    place = [b + w / length * apart for b, w in zip(other["place"], way)]
+    for k, axis in enumerate("xyz"):
+        room = 0.0 if axis in scene["periodic"] else radius
+        if not scene["low"][k] + room <= place[k] <= scene["low"][k] + scene["size"][k] - room:
+            return None
+    return place
 
 
 def distance(scene, a, b):
