@@ -1,6 +1,9 @@
 #pragma once
+#include <optional>
+
 #include "dem/bed/bed.h"
 #include "dem/bed/near_pairs.h"
+#include "dem/bed/touches.h"
 
 namespace granrad {
 
@@ -25,6 +28,11 @@ class Engine {
   /// As near_pairs(bed, max_gap_m) for the bed that `advance` left, without a second search where the
   /// engine still holds its list.
   virtual NearPairs near_pairs(const Bed& bed, double max_gap_m) = 0;
+
+  /// Asks for `touches` of every advance from now on.
+  virtual void record_touches() {}
+  /// How bodies touched during the last `advance`, which left this bed; nothing where the engine does not record it.
+  virtual std::optional<Touches> touches(const Bed&) const { return {}; }
 
   virtual EngineThreads threads() const { return {}; }
 };

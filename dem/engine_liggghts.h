@@ -25,6 +25,7 @@ namespace granrad {
 /// Wall springs are stored under the number of their face in the order of walls and triangles: for polygons
 /// the native engine's, so either goes on from a frame of the other; springs at meshes, edges and corners may
 /// start anew there. Faces within 0.26 degrees of each other count as one plane.
+/// It does not record touches: heat sees contacts as they stand when asked, collisions shorter than that by chance.
 /// LIGGGHTS detects no tunnelling and no deep overlap. Its errors arrive as exceptions; it and MPI stay
 /// silent. MPI starts with the first engine and ends with the process.
 ///

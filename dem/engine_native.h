@@ -19,6 +19,7 @@ namespace granrad {
 /// positions, their differences, velocities between steps, the sums of forces and walls stay double, springs
 /// and the velocities the law sees are rounded to single. Everything said above holds of its bits as well.
 ///
+/// Touches take the areas of contacts at the middle of every step, where forces are.
 /// threads: the most to use, 0: OpenMP's default. One alone is used where it is faster, which the engine finds
 /// out in the run and now and then again: small beds, machines with other work. bed.time_s = bed.step x step_s after each advance.
 std::unique_ptr<Engine> make_native_engine(const Bed& bed, const Vec3& gravity_m_s2, double step_s,

@@ -1,6 +1,7 @@
 # tests of coupling and of traced paths: granrad_test(shelf/name libraries...)
 granrad_test(analytic/gas_lens granrad_coupling)
 granrad_test(analytic/conduction granrad_coupling)
+granrad_test(analytic/collision_heat granrad_coupling granrad_dem)
 granrad_test(analytic/radiosity granrad_coupling Eigen3::Eigen)
 granrad_test(analytic/heating granrad_coupling)
 granrad_test(unit/energy_ledger granrad_coupling)

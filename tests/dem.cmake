@@ -2,6 +2,7 @@
 granrad_test(physics/two_body granrad_dem)
 granrad_test(physics/mixed_precision granrad_dem)
 granrad_test(physics/size_ratio granrad_dem)
+granrad_test(physics/touches granrad_dem)
 granrad_test(regression/engine_bits granrad_dem)
 granrad_test(physics/engine_walls granrad_dem)
 granrad_test(unit/step_limit granrad_dem)

@@ -76,10 +76,18 @@ void judge_flow(const Case& c, Verdict& verdict) {
   verdict.say(rolling, "rolling friction", "rolling friction: material.rolling_friction is 0");
 }
 
+/// A collision may begin and end between two heat steps.
+const char* how_contacts_are_seen(EngineKind engine) {
+  if (engine == EngineKind::native) return ", integrated over every DEM step";
+  return engine == EngineKind::liggghts ? ", as they stand at each heat step (short collisions are sampled)"
+                                        : "";
+}
+
 void judge_conduction(const Case& c, Verdict& verdict) {
   const auto& conduction = c.heat.conduction;
   verdict.say(conduction.solid,
-              fmt::format("conduction through contacts, modulus exponent {:g}", conduction.modulus_exponent),
+              fmt::format("conduction through contacts, modulus exponent {:g}{}", conduction.modulus_exponent,
+                          how_contacts_are_seen(c.flow.engine)),
               "conduction through contacts: conduction.solid = false");
   verdict.say(conduction.gas.has_value(),
               conduction.gas

@@ -69,10 +69,36 @@ void drop_empty(std::vector<Entry>& entries) {
   std::erase_if(entries, [](const Entry& e) { return e.solid_W_K == 0 && e.gas_W_K == 0; });
 }
 
+/// The solid path of touches: into the entry of the same pair where there is one, else behind all.
+template <class Inside>
+void add_touches(const Bed& bed, const Touches& touches, const ContactTable& contact, Inside inside,
+                 Conductances& result) {
+  const auto solid = [&](std::int32_t i, std::int32_t j, double root_area_m) {
+    return contact(bed.material[i], bed.material[j]) * root_area_m;
+  };
+  for (auto& g : result.particles) g.solid_W_K = 0;
+  for (auto& g : result.walls) g.solid_W_K = 0;
+  const std::size_t near = result.particles.size();
+  std::size_t k = 0;
+  for (const auto& [i, j, root_area_m] : touches.particles) {
+    if (!inside(i) || !inside(j)) continue;
+    const auto before = [&](const PairConductance& g) { return g.i != i ? g.i < i : g.j < j; };
+    while (k < near && before(result.particles[k])) ++k;
+    if (k < near && result.particles[k].i == i && result.particles[k].j == j)
+      result.particles[k].solid_W_K = solid(i, j, root_area_m);
+    else
+      result.particles.push_back({i, j, solid(i, j, root_area_m), 0});
+  }
+  for (const auto& [i, wall, root_area_m] : touches.walls)
+    if (inside(i) && bed.walls[wall].role == WallRole::isothermal)
+      result.walls.push_back({i, wall, solid(i, i, root_area_m), 0});
+  drop_empty(result.particles), drop_empty(result.walls);
+}
+
 }  // namespace
 
 Conductances conductances(const Bed& bed, const NearPairs& pairs, const ConductionSettings& settings,
-                          const std::vector<char>& in_region) {
+                          const std::vector<char>& in_region, const Touches* touches) {
   const ContactTable contact(bed.materials, settings);
   const auto inside = [&](std::int32_t i) { return in_region.empty() || in_region[i]; };
 
@@ -99,6 +125,7 @@ Conductances conductances(const Bed& bed, const NearPairs& pairs, const Conducti
     g.gas_W_K = gas_conductance_to_wall(settings.gas, r, distance);
   }
   drop_empty(result.walls);
+  if (touches) add_touches(bed, *touches, contact, inside, result);
   return result;
 }
 

@@ -5,6 +5,7 @@
 
 #include "dem/bed/bed.h"
 #include "dem/bed/near_pairs.h"
+#include "dem/bed/touches.h"
 
 namespace granrad {
 
@@ -52,7 +53,11 @@ double lens_cutoff_gap_m(const ConductionSettings& settings, double max_radius_m
 /// particle's material. Only isothermal walls conduct, and only particles with in_region[i] != 0 (empty:
 /// all); a pair needs both. Throws InputError when `solid` meets a material without a positive real modulus
 /// or conductivity.
+///
+/// touches: contacts as they were while the bed moved here, for the solid path in place of the places at its end.
+/// Heat then passes as the integral of sqrt(A) over the time moved, in a collision too that is over; pairs that
+/// touched and are not near any more are among the result, which is sorted no more.
 Conductances conductances(const Bed& bed, const NearPairs& pairs, const ConductionSettings& settings,
-                          const std::vector<char>& in_region = {});
+                          const std::vector<char>& in_region = {}, const Touches* touches = nullptr);
 
 }  // namespace granrad

@@ -102,6 +102,7 @@ void Flow::advance(Bed& bed, const TimePlan& plan, std::int64_t tick) {
   }
   if (feed_) feed_->update(bed);
   if (!engine_) engine_ = make_engine(scene_, bed, plan.step_s, threads_);
+  if (records_touches_) engine_->record_touches();
   // Half a step early: the last step is the one at or after it, whatever rounding does.
   engine_->advance(bed, plan.time_s(tick) - 0.5 * plan.step_s);
   if (bed.step != last_step)

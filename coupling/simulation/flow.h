@@ -18,6 +18,12 @@ class Flow {
   void advance(Bed& bed, const TimePlan& plan, std::int64_t tick);
   /// Pairs within the gap, from the engine's own list; found once in a frozen bed.
   const NearPairs& near_pairs(const Bed& bed, double max_gap_m);
+  /// Has the engine record what touches, for `touches`; before the first advance.
+  void record_touches(bool wanted) { records_touches_ = wanted; }
+  /// How bodies touched since the last tick; nothing in a frozen bed, and from an engine that does not say.
+  std::optional<Touches> touches(const Bed& bed) const {
+    return engine_ ? engine_->touches(bed) : std::nullopt;
+  }
   /// Threads the engine works with; of a frozen bed 1 of 1.
   EngineThreads threads() const { return engine_ ? engine_->threads() : EngineThreads{}; }
   bool moves() const { return scene_.engine != EngineKind::none; }
@@ -36,6 +42,7 @@ class Flow {
   std::unique_ptr<Engine> engine_;  ///< made at the first advance, when the bed is known
   NearPairs pairs_;
   bool pairs_known_ = false;
+  bool records_touches_ = false;
 };
 
 }  // namespace granrad

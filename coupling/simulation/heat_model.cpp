@@ -36,8 +36,11 @@ const Conductances& HeatModel::conduct(const Bed& bed, Flow& flow) {
   if (!settings.solid && !settings.gas) return conductances_;
   if (conductances_known_ && !flow.moves()) return conductances_;
   const double largest = bed.size() ? *std::max_element(bed.radius_m.begin(), bed.radius_m.end()) : 0;
-  conductances_ = conductances(bed, flow.near_pairs(bed, lens_cutoff_gap_m(settings, largest)), settings,
-                               in_region(bed, case_.flow.region));
+  const auto touches = settings.solid ? flow.touches(bed) : std::nullopt;
+  const bool needs_pairs = !touches || settings.gas;
+  conductances_ = conductances(
+      bed, needs_pairs ? flow.near_pairs(bed, lens_cutoff_gap_m(settings, largest)) : NearPairs{}, settings,
+      in_region(bed, case_.flow.region), touches ? &*touches : nullptr);
   conductances_known_ = true;
   return conductances_;
 }

@@ -50,7 +50,9 @@ std::int64_t identity(const Case& c) {
 }  // namespace
 
 Simulation::Simulation(const Case& c, int threads)
-    : case_(c), flow_(c.flow, threads), heat_(c, threads), recorder_(c) {}
+    : case_(c), flow_(c.flow, threads), heat_(c, threads), recorder_(c) {
+  flow_.record_touches(c.heat.conduction.solid);
+}
 
 void Simulation::start(Bed bed) {
   bed_ = std::move(bed);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "dem/base/error.h"
 #include "dem/engine_liggghts.h"
@@ -18,6 +19,16 @@ void check_finite(const Spheres& s, const Bed& bed) {
         !is_finite(s.angular_velocity_rad_s[i]))
       throw NumericalError(advised(fmt::format("particle {} left the range of numbers", bed.id[i]),
                                    "try a smaller step or less overlap at the start"));
+}
+
+/// The whole periods by which p stands outside the box: LIGGGHTS takes positions inside it.
+Vec3 periods_outside(const Bed& bed, const Vec3& p) {
+  Vec3 shift;
+  for (int a = 0; a < 3; ++a) {
+    const double period = bed.box.size()[a];
+    if (bed.periodic[a]) shift[a] = period * std::floor((p[a] - bed.box.min[a]) / period);
+  }
+  return shift;
 }
 
 class LiggghtsEngine final : public Engine {
@@ -57,7 +68,8 @@ void LiggghtsEngine::fit_session(Deck deck) {
 
 Spheres LiggghtsEngine::spheres_of(const Bed& bed, const WallMeshes& walls) const {
   Spheres s;
-  s.position_m = bed.position_m, s.velocity_m_s = bed.velocity_m_s;
+  for (const auto& p : bed.position_m) s.position_m.push_back(p - periods_outside(bed, p));
+  s.velocity_m_s = bed.velocity_m_s;
   s.angular_velocity_rad_s = bed.angular_velocity_rad_s, s.radius_m = bed.radius_m;
   for (const auto m : bed.material) {
     s.type.push_back(deck_.type_of_material[m]);
@@ -72,14 +84,16 @@ Spheres LiggghtsEngine::spheres_of(const Bed& bed, const WallMeshes& walls) cons
       if (second >= 0) s.pair_springs.push_back({first, second, c.displacement_m});
       continue;
     }
-    const auto place = walls.nearest(-1 - c.second, bed.position_m[first]);
+    const auto place = walls.nearest(-1 - c.second, s.position_m[first]);
     if (place.triangle >= 0) s.wall_springs[place.mesh].push_back({first, place.triangle, c.displacement_m});
   }
   return s;
 }
 
 void LiggghtsEngine::store(const Spheres& s, const WallMeshes& walls, Bed& bed) const {
-  bed.position_m = s.position_m, bed.velocity_m_s = s.velocity_m_s;
+  for (std::size_t i = 0; i < bed.size(); ++i)
+    bed.position_m[i] = s.position_m[i] + periods_outside(bed, bed.position_m[i]);
+  bed.velocity_m_s = s.velocity_m_s;
   bed.angular_velocity_rad_s = s.angular_velocity_rad_s;
   bed.contacts.clear();
   for (const auto& p : s.pair_springs)

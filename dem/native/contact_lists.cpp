@@ -32,12 +32,41 @@ void ContactLists::restart(std::vector<Memory> memories) {
   life_ = 0;
 }
 
-void ContactLists::deal(int threads, const Rows& rows) {
+void ContactLists::deal(int threads, const Rows& rows, const WallSurface& surface) {
   if (!stale_) memories_ = collect(rows);
+  set_touches_aside(rows, surface);
   shares_ = std::vector<Share>(threads);
   for (auto& s : shares_) s.outbox.resize(threads);
   stale_ = walls_stale_ = true;
   life_ = 0;
+}
+
+void ContactLists::visit_touches(const Share& s, const Rows& rows, const WallSurface& surface,
+                                 RecordedTouches& out) {
+  const auto to = [](std::vector<TouchSum>& sums) {
+    return [&sums](std::int32_t a, std::int32_t b, double units) { sums.push_back({a, b, units}); };
+  };
+  s.own.visit_touches(rows, false, to(out.particles));
+  s.cross.visit_touches(rows, true, to(out.particles));
+  s.walls.visit_touches(surface, rows, to(out.walls));
+}
+
+void ContactLists::set_touches_aside(const Rows& rows, const WallSurface& surface) {
+  for (auto& s : shares_) {
+    visit_touches(s, rows, surface, touched_);
+    s.own.clear_touches(), s.cross.clear_touches(), s.walls.clear_touches();
+  }
+}
+
+void ContactLists::clear_touches() {
+  for (auto& s : shares_) s.own.clear_touches(), s.cross.clear_touches(), s.walls.clear_touches();
+  touched_.particles.clear(), touched_.walls.clear();
+}
+
+RecordedTouches ContactLists::touches(const Rows& rows, const WallSurface& surface) const {
+  RecordedTouches all = touched_;
+  for (const auto& s : shares_) visit_touches(s, rows, surface, all);
+  return all;
 }
 
 double ContactLists::margin_of(double speed, std::int64_t steps) const {
@@ -212,8 +241,9 @@ void ContactLists::restore_walls(const Rows& rows) {
 }
 
 void ContactLists::rebuild(Rows& rows, const Model& model, const Periods& periods, const Bed& bed,
-                           std::int64_t steps) {
+                           const WallSurface& surface, std::int64_t steps) {
   ++rebuilds;
+  set_touches_aside(rows, surface);  // rows get other numbers
   if (!stale_) memories_ = collect(rows);
   Vec3 sum;
   for (std::int64_t i = 0; i < rows.count; ++i) sum += rows.velocity_of(i);
@@ -240,7 +270,7 @@ void ContactLists::refresh(Rows& rows, const Model& model, const Periods& period
       list->refresh(kernels_, rows.view(), model.constants, memory_table_);
       if (!rows.uniform) list->fill_coefficients(rows, bed.materials);
     }
-    share.walls.refresh(surface, rows, periods, bed.materials, model.constants.life_s,
+    share.walls.refresh(surface, rows, periods, bed.materials, model.constants,
                         static_cast<std::int32_t>(rows.count + 2 * t));
   }
 }
@@ -258,7 +288,7 @@ std::int64_t ContactLists::prepare(Rows& rows, Model& model, const Periods& peri
   closing_.assign(rows.count + 2 * shares_.size(), 0);
   Slack slack = measure_slack(rows, steps);
   const bool rebuilt = rebuild_is_due(slack);
-  if (rebuilt) rebuild(rows, model, periods, bed, steps);
+  if (rebuilt) rebuild(rows, model, periods, bed, surface, steps);
   const bool walls_due = walls_stale_ || slack.walls_m < 0;
   if (walls_due) {
     find_walls(rows, periods, surface);

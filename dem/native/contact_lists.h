@@ -17,6 +17,11 @@ struct ListSchedule {
       0;  ///< 0: near lists when someone has moved through the skin; else also every so many steps
 };
 
+/// Touches by Bed index, in no order; one pair may come several times.
+struct RecordedTouches {
+  std::vector<TouchSum> particles, walls;
+};
+
 /// Keeps the near and tight lists of all threads in step with the rows.
 class ContactLists {
  public:
@@ -25,7 +30,10 @@ class ContactLists {
   /// Forgets the lists; springs come from `memories` when they are made again.
   void restart(std::vector<Memory> memories);
   /// Deals the rows out to this many shares when lists are made next, which is before the next step.
-  void deal(int threads, const Rows& rows);
+  void deal(int threads, const Rows& rows, const WallSurface& surface);
+  /// Touches recorded since clear_touches, where StepConstants::touch_units asks for them.
+  RecordedTouches touches(const Rows& rows, const WallSurface& surface) const;
+  void clear_touches();
   /// Positions or velocities were changed from outside.
   void touch() { life_ = 0; }
   void walls_changed() { walls_stale_ = true, life_ = 0; }
@@ -69,7 +77,11 @@ class ContactLists {
   void set_reaches(Rows& rows, std::int64_t steps);
   bool rebuild_is_due(const Slack& slack) const;
   /// Makes the near lists anew, in rows sorted anew.
-  void rebuild(Rows& rows, const Model& model, const Periods& periods, const Bed& bed, std::int64_t steps);
+  void rebuild(Rows& rows, const Model& model, const Periods& periods, const Bed& bed,
+               const WallSurface& surface, std::int64_t steps);
+  static void visit_touches(const Share& share, const Rows& rows, const WallSurface& surface,
+                            RecordedTouches& out);
+  void set_touches_aside(const Rows& rows, const WallSurface& surface);
   void sort_rows(Rows& rows, const Periods& periods, const Bed& bed, double cell_m);
   /// Hands the springs at walls to the shares that own their rows.
   void restore_walls(const Rows& rows);
@@ -85,6 +97,7 @@ class ContactLists {
   Grid grid_;
   MemoryTable memory_table_;
   std::vector<Memory> memories_;
+  RecordedTouches touched_;                        ///< of lists that are no more
   std::vector<double> near_origin_, wall_origin_;  ///< [3 n] where the rows were when the list was made
   std::vector<double> closing_;                    ///< [n + idle rows] see PairList::find_closing_speeds
   Skins skins_;

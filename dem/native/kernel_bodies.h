@@ -42,6 +42,11 @@ struct KernelBodies {
         state.arm_spin[a] = arm * v[4 + a];
         state.displacement[a] = S::load(c.displacement[a] + k);
       }
+      if (c.touch_sum) {
+        const V area = S::set(4 * quarter_pi) * S::max(r * r - h * h, S::set(0.0));
+        double* sum = c.touch_sum + k;
+        S::store(sum, S::load(sum) + S::round(S::sqrt(area) * S::set(constants.touch_units)));
+      }
       const typename Pairs::Law law = varied ? Pairs::varied_law(c, k) : uniform;
       const auto result = ContactLaw::force<S>(law, S::set(constants.step_s), state);
       worst.beyond = S::max(worst.beyond, state.overlap - S::set(deepest_overlap) * r);

@@ -40,6 +40,7 @@ struct ContactView {
   double* displacement[3];  ///< tangential springs, m
   float* rounded[3];        ///< the same where the law is in single precision
   VariedView varied;
+  double* touch_sum;  ///< see TouchSum; nullptr: not recorded
 };
 
 /// Walls that act as planes: rows {point, 0, unit normal, 0} of eight and velocity rows {v, 0} of four
@@ -59,7 +60,8 @@ struct StepConstants {
   LawCoefficients pair, wall;  ///< when all particles are alike
   double radius;
   double step_s;
-  double life_s;  ///< of the tight lists, from one refresh to the next
+  double touch_units;  ///< of contact sums (TouchSum), 1/m; 0: none are recorded
+  double life_s;       ///< of the tight lists, from one refresh to the next
   bool periodic;
   double period[3], inverse_period[3];  ///< zero where not periodic
   FixedScales scales;                   ///< of every particle where all are alike

@@ -84,7 +84,7 @@ void fill_kicks(Rows& rows, double step_s, Model& m) {
 }  // namespace
 
 Model make_model(const Bed& bed, Rows& rows, const Periods& periods, const Vec3& gravity, double step_s,
-                 Precision precision) {
+                 Precision precision, bool records_touches) {
   Model m;
   StepConstants& c = m.constants;
   c.step_s = step_s;
@@ -95,6 +95,7 @@ Model make_model(const Bed& bed, Rows& rows, const Periods& periods, const Vec3&
   if (rows.count == 0) return m;
   m.largest_radius = *std::max_element(rows.radius.begin(), rows.radius.begin() + rows.count);
   m.largest_force_units = precision == Precision::mixed ? 0x1p51 : 0x1p62 / contacts_around;
+  if (records_touches) c.touch_units = power_of_two_below(0x1p29 / m.largest_radius);
   fill_scales(bed, rows, norm(gravity), step_s, precision);
   fill_kicks(rows, step_s, m);
   const ContactBody body{&bed.materials[rows.material[0]], rows.radius[0], rows.mass[0]};

@@ -28,6 +28,6 @@ struct Model {
 /// makes it (`largest_force_units`); a weight too small for its unit is refused here (InputError).
 /// Also fills rows.scales and, where particles differ, rows.kick.
 Model make_model(const Bed& bed, Rows& rows, const Periods& periods, const Vec3& gravity_m_s2, double step_s,
-                 Precision precision = Precision::full);
+                 Precision precision = Precision::full, bool records_touches = false);
 
 }  // namespace granrad::native

@@ -61,8 +61,9 @@ struct NativeEngine::Impl {
   Box box{};
   Model model;
   ThreadChoice choice{1};
-  int most_threads = 0;  ///< rows are laid out for
-  double left_at_s = 0;  ///< time of the Bed after the last advance
+  int most_threads = 0;          ///< rows are laid out for
+  std::int64_t touch_steps = 0;  ///< of the last advance
+  double left_at_s = 0;          ///< time of the Bed after the last advance
   std::int64_t list_reads = 0;
 
   Impl(const Vec3& g, double step, const EngineOptions& o)
@@ -112,7 +113,7 @@ void NativeEngine::Impl::load(const Bed& bed) {
   const auto change = transfer.load(bed, rows, 0.5 * step_s, choice.threads(), most_threads);
   if (options.precision == Precision::mixed) rows.motion.resize(rows.velocity.size());
   if (change == BedTransfer::Change::particles)
-    model = make_model(bed, rows, *periods, gravity, step_s, options.precision);
+    model = make_model(bed, rows, *periods, gravity, step_s, options.precision, options.records_touches);
   if (change >= BedTransfer::Change::memory) lists->restart(BedTransfer::memories(bed));
   if (change == BedTransfer::Change::moved) lists->touch();
   model.move.kick = rows.uniform ? model.kick_row.data() : rows.kick.data();
@@ -220,9 +221,11 @@ void NativeEngine::advance(Bed& bed, double until_s) {
     return;
   }
   e.load(bed);
+  e.lists->clear_touches();
+  e.touch_steps = last - bed.step;
   std::int64_t step = bed.step;
   while (step < last) {
-    if (e.choice.threads() != e.lists->threads()) e.lists->deal(e.choice.threads(), e.rows);
+    if (e.choice.threads() != e.lists->threads()) e.lists->deal(e.choice.threads(), e.rows, *e.surface);
     const double opens = next_opening_s(e.walls, clock.time_s(step)), started_s = now_s();
     auto steps = std::min(last - step, e.lists->prepare(e.rows, e.model, *e.periods, bed, *e.surface));
     steps = e.choice.longest_piece(steps);
@@ -260,6 +263,21 @@ NearPairs NativeEngine::near_pairs(const Bed& bed, double max_gap_m) {
                          : granrad::near_walls(bed, max_gap_m);
   }
   return pairs;
+}
+
+void NativeEngine::record_touches() {
+  if (impl_->options.records_touches) return;
+  impl_->options.records_touches = true;
+  impl_->rows.count = -1;  // the model is made anew
+}
+
+std::optional<Touches> NativeEngine::touches(const Bed& bed) const {
+  const Impl& e = *impl_;
+  if (!e.options.records_touches || !e.lists || !e.holds(bed)) return {};
+  const auto sums = e.lists->touches(e.rows, *e.surface);
+  const double units = e.model.constants.touch_units;
+  return Touches{touch_means<PairTouch>(sums.particles, bed.size(), units, e.touch_steps),
+                 touch_means<WallTouch>(sums.walls, bed.size(), units, e.touch_steps)};
 }
 
 EngineThreads NativeEngine::threads() const {

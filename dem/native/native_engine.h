@@ -13,6 +13,7 @@ struct EngineOptions {
   bool adapts = false;  ///< fewer where that is faster, found out in the run; else `threads`, as they are
   ListSchedule schedule{};
   Precision precision = Precision::full;
+  bool records_touches = false;      ///< see Engine::touches
   const Kernels* kernels = nullptr;  ///< nullptr: select_kernels()
 };
 
@@ -31,6 +32,8 @@ class NativeEngine : public Engine {
   ~NativeEngine() override;
   void advance(Bed& bed, double until_s) override;
   NearPairs near_pairs(const Bed& bed, double max_gap_m) override;
+  void record_touches() override;
+  std::optional<Touches> touches(const Bed& bed) const override;
   EngineThreads threads() const override;
   EngineCounts counts() const;
 

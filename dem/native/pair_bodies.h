@@ -6,6 +6,7 @@
 // keeps for everyone.
 namespace granrad::native {
 
+inline constexpr double quarter_pi = 0.78539816339744830962;
 inline constexpr std::int64_t chunk =
     32;  ///< contacts between gathering and scattering; their data stays in L1
 
@@ -87,6 +88,21 @@ struct PairBodies {
     in.square = S::narrow(square), in.excess = S::narrow(excess);
   }
 
+  /// Adds the root of the area of the disc in which the spheres intersect, pi/4 (D^2 - d^2)(d^2 - (ri - rj)^2)/d^2
+  /// with D = ri + rj.
+  template <bool varied>
+  GRANRAD_INLINE void record_touch(const ContactView& c, const StepConstants& constants, std::int64_t k, V ri,
+                                   V rj, const Gathered& in) {
+    V area = S::set(quarter_pi) * S::max(in.excess, S::set(0.0));
+    if constexpr (varied) area = area * (in.square - (ri - rj) * (ri - rj)) / in.square;
+    typename D::V wide[H];
+    S::widen(S::sqrt(area), wide);
+    for (int h = 0; h < H; ++h) {
+      double* sum = c.touch_sum + k + h * D::width;
+      D::store(sum, D::load(sum) + D::round(wide[h] * D::set(constants.touch_units)));
+    }
+  }
+
   template <bool varied, bool first_only>
   GRANRAD_INLINE void contact(const ContactView& c, const StepConstants& constants, const Law& uniform,
                               std::int64_t k, const Gathered& in, Scattered& out, Worst& worst) {
@@ -102,6 +118,7 @@ struct PairBodies {
       rj = S::load(column(c, BodyColumn::second_radius, k));
     else
       ri = rj = S::set(constants.radius);
+    if (c.touch_sum) record_touch<varied>(c, constants, k, ri, rj, in);
     const V distance = S::sqrt(in.square), inverse = S::set(1.0) / distance;
     ContactState<S> state;
     state.overlap = S::overlap(ri + rj, distance, in.excess);

@@ -105,12 +105,25 @@ void PairList::refresh(const Kernels& kernels, const RowView& rows, const StepCo
   }
   for (auto k = found; k < padded_; ++k) next_springs_.put(k, {});
   for (auto k = found; k < padded_ + look_ahead; ++k) first_[k] = idle_row_, second_[k] = idle_row_ + 1;
+  carry_touches(constants.touch_units > 0);
   for (const auto n : number_) place_[n] = -1;
   for (std::int64_t k = 0; k < found; ++k) place_[next_number_[k]] = static_cast<std::int32_t>(k);
   number_.swap(next_number_), std::swap(springs_, next_springs_);
   tight_count_ = found, fresh_ = false;
   varied_.clear();
   find_settled();
+}
+
+void PairList::carry_touches(bool recorded) {
+  next_touch_sum_.assign(recorded ? padded_ : 0, 0.0);
+  if (!fresh_ && !touch_sum_.empty()) {
+    for (std::size_t k = 0; k < next_number_.size(); ++k)
+      if (const auto before = place_[next_number_[k]]; before >= 0)
+        next_touch_sum_[k] = std::exchange(touch_sum_[before], 0.0);
+    for (std::size_t k = 0; k < number_.size(); ++k)
+      if (touch_sum_[k] != 0) left_.push_back({near_i_[number_[k]], near_j_[number_[k]], touch_sum_[k]});
+  }
+  touch_sum_.swap(next_touch_sum_);
 }
 
 void PairList::find_settled() {
@@ -138,7 +151,9 @@ void PairList::fill_coefficients(const Rows& rows, const std::vector<Material>& 
 }
 
 ContactView PairList::view(std::int64_t begin, std::int64_t end) {
-  ContactView v{first_.data() + begin, second_.data() + begin, end - begin, {}, {}, varied_.view(begin)};
+  ContactView v{
+      first_.data() + begin, second_.data() + begin, end - begin, {}, {}, varied_.view(begin), nullptr};
+  if (!touch_sum_.empty()) v.touch_sum = touch_sum_.data() + begin;
   for (int a = 0; a < 3; ++a)
     v.displacement[a] = springs_.full(a) + begin, v.rounded[a] = springs_.rounded(a) + begin;
   return v;
@@ -154,7 +169,8 @@ std::size_t PairList::bytes() const {
   return 4 * (near_i_.capacity() + near_j_.capacity() + first_.capacity() + second_.capacity() +
               number_.capacity() + next_number_.capacity() + found_first_.capacity() +
               found_second_.capacity() + found_number_.capacity() + place_.capacity()) +
-         springs_.bytes() + next_springs_.bytes() + varied_.bytes();
+         springs_.bytes() + next_springs_.bytes() + varied_.bytes() +
+         8 * (touch_sum_.capacity() + next_touch_sum_.capacity());
 }
 
 }  // namespace granrad::native

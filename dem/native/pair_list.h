@@ -10,6 +10,7 @@
 #include "dem/native/kernels.h"
 #include "dem/native/rows.h"
 #include "dem/native/spring_columns.h"
+#include "dem/native/touch_sums.h"
 
 namespace granrad::native {
 
@@ -71,6 +72,20 @@ class PairList {
     }
   }
 
+  /// Calls visit(a, b, units) for every recorded touch, Bed index a < b; of twins only the one with the lower row
+  /// first.
+  template <class Visit>
+  void visit_touches(const Rows& rows, bool twins, Visit visit) const {
+    const auto tell = [&](std::int32_t i, std::int32_t j, double units) {
+      if (units == 0 || (twins && i > j)) return;
+      const auto a = rows.bed_index[i], b = rows.bed_index[j];
+      visit(std::min(a, b), std::max(a, b), units);
+    };
+    for (std::size_t k = 0; k < touch_sum_.size(); ++k) tell(first_[k], second_[k], touch_sum_[k]);
+    for (const auto& t : left_) tell(t.first, t.second, t.units);
+  }
+  void clear_touches() { std::fill(touch_sum_.begin(), touch_sum_.end(), 0.0), left_.clear(); }
+
   std::int64_t near_count() const { return near_count_; }
   std::int64_t tight_count() const { return tight_count_; }
   /// Contacts that touch now: tight pairs with a spring.
@@ -85,6 +100,8 @@ class PairList {
   std::int64_t select(const Kernels& kernels, const RowView& rows, const StepConstants& constants);
 
   ContactView view(std::int64_t begin, std::int64_t end);
+  /// The touches of tight pairs before, carried to where `next_number_` says they stand now.
+  void carry_touches(bool recorded);
   void find_settled();
 
   static constexpr std::int64_t block = 512;  ///< contacts; their rows stay in the first caches
@@ -97,7 +114,9 @@ class PairList {
   AlignedVector<std::int32_t> place_;                 ///< of near pairs in the tight list, or -1
   SpringColumns springs_, next_springs_;
   ContactColumns varied_;
-  std::vector<std::int64_t> settled_before_;  ///< by block
+  AlignedVector<double> touch_sum_, next_touch_sum_;  ///< by tight pair; empty: none are recorded
+  std::vector<TouchSum> left_;                        ///< of pairs that left the tight list, by rows
+  std::vector<std::int64_t> settled_before_;          ///< by block
   std::int64_t near_count_ = 0, tight_count_ = 0, padded_ = 0;
   std::int32_t idle_row_ = 0;
   bool fresh_ = true;  ///< near numbers have changed: springs come from the memories

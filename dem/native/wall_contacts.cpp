@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/base/constants.h"
+
 namespace granrad::native {
 namespace {
 
@@ -148,7 +150,11 @@ void WallContacts::find_closing_speeds(const WallSurface& surface, const Rows& r
 }
 
 void WallContacts::refresh(const WallSurface& surface, const Rows& rows, const Periods& periods,
-                           const std::vector<Material>& materials, double life_s, std::int32_t idle_row) {
+                           const std::vector<Material>& materials, const StepConstants& constants,
+                           std::int32_t idle_row) {
+  const double life_s = constants.life_s;
+  for (std::int64_t k = 0; k < plane_count_ && !touch_sum_.empty(); ++k)
+    if (touch_sum_[k] != 0) left_.push_back({rows_[k], surface.wall(facets_[k]), touch_sum_[k]});
   std::vector<WallMemory> kept = restored_ ? std::move(memories_) : collect();
   restored_ = false;
   memories_.clear(), borders_.clear(), border_facets_.clear();
@@ -177,6 +183,7 @@ void WallContacts::refresh(const WallSurface& surface, const Rows& rows, const P
     borders_.push_back(std::move(border));
   }
   finish_planes(rows, materials, idle_row, surface.facet_count());
+  touch_sum_.assign(constants.touch_units > 0 ? rows_.size() : 0, 0.0);
 }
 
 WorstContact WallContacts::add_forces(const Kernels& kernels, const WallSurface& surface, Rows& rows,
@@ -185,7 +192,8 @@ WorstContact WallContacts::add_forces(const Kernels& kernels, const WallSurface&
   WorstContact worst;
   if (plane_count_ > 0) {
     const auto padded = static_cast<std::int64_t>(rows_.size());
-    ContactView view{rows_.data(), facets_.data(), padded, {}, {}, varied_.view(0)};
+    ContactView view{rows_.data(), facets_.data(), padded, {}, {}, varied_.view(0), nullptr};
+    if (!touch_sum_.empty()) view.touch_sum = touch_sum_.data();
     for (int a = 0; a < 3; ++a) view.displacement[a] = displacement_[a].data();
     worst =
         kernels.plane_contacts(rows.view(), view, {surface.plane_rows(), surface.velocity_rows()}, constants);
@@ -253,6 +261,19 @@ WorstContact WallContacts::add_touch(const WallSurface& surface, Rows& rows, std
   return worst;
 }
 
+/// Few rows are at edges, but each at every step: what belongs together is added up where it was put last.
+void WallContacts::record_touch(const StepConstants& constants, std::int32_t row, std::int32_t wall,
+                                double radius, double distance) {
+  const double area = pi * std::max((radius - distance) * (radius + distance), 0.0);
+  const double units = ScalarPack::round(std::sqrt(area) * constants.touch_units);
+  const auto same = [&](const TouchSum& t) { return t.first == row && t.second == wall; };
+  const auto at = std::find_if(left_.rbegin(), left_.rend(), same);
+  if (at != left_.rend())
+    at->units += units;
+  else
+    left_.push_back({row, wall, units});
+}
+
 WorstContact WallContacts::border_forces(const WallSurface& surface, Rows& rows, const Periods& periods,
                                          const StepConstants& constants,
                                          const std::vector<Material>& materials, Border& border) {
@@ -271,6 +292,8 @@ WorstContact WallContacts::border_forces(const WallSurface& surface, Rows& rows,
   WorstContact worst;
   for (std::size_t k = 0; k < touches.size(); ++k) {
     auto& s = springs[k];
+    if (constants.touch_units > 0)
+      record_touch(constants, i, surface.wall(touches[k].facet), rows.radius[i], touches[k].distance_m);
     worst.include(add_touch(surface, rows, i, law, constants, touches[k], s.displacement));
     if (!(s.displacement == Vec3{})) border.springs.push_back(s);
   }

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -6,6 +7,7 @@
 #include "dem/native/grid.h"
 #include "dem/native/kernels.h"
 #include "dem/native/rows.h"
+#include "dem/native/touch_sums.h"
 #include "dem/native/wall_surface.h"
 
 namespace granrad::native {
@@ -38,7 +40,7 @@ class WallContacts {
                            double life_s, std::vector<double>& closing) const;
   /// Chooses those that can touch before the next refresh; in `life_s`.
   void refresh(const WallSurface& surface, const Rows& rows, const Periods& periods,
-               const std::vector<Material>& materials, double life_s, std::int32_t idle_row);
+               const std::vector<Material>& materials, const StepConstants& constants, std::int32_t idle_row);
   /// Adds the forces.
   WorstContact add_forces(const Kernels& kernels, const WallSurface& surface, Rows& rows,
                           const Periods& periods, const StepConstants& constants,
@@ -46,6 +48,14 @@ class WallContacts {
 
   /// Springs that are not zero, in ascending rows.
   std::vector<WallMemory> collect() const;
+  /// Calls visit(Bed index, wall, units) for every recorded touch.
+  template <class Visit>
+  void visit_touches(const WallSurface& surface, const Rows& rows, Visit visit) const {
+    for (std::int64_t k = 0; k < plane_count_ && !touch_sum_.empty(); ++k)
+      if (touch_sum_[k] != 0) visit(rows.bed_index[rows_[k]], surface.wall(facets_[k]), touch_sum_[k]);
+    for (const auto& t : left_) visit(rows.bed_index[t.first], t.second, t.units);
+  }
+  void clear_touches() { std::fill(touch_sum_.begin(), touch_sum_.end(), 0.0), left_.clear(); }
   /// Replaces what the next refresh carries over.
   void restore(std::vector<WallMemory> memories) { memories_ = std::move(memories), restored_ = true; }
   struct Near {
@@ -76,6 +86,8 @@ class WallContacts {
   static WorstContact add_touch(const WallSurface& surface, Rows& rows, std::int32_t row,
                                 const LawCoefficients& law, const StepConstants& constants,
                                 const WallSurface::Touch& touch, Vec3& spring);
+  void record_touch(const StepConstants& constants, std::int32_t row, std::int32_t wall, double radius,
+                    double distance);
   WorstContact border_forces(const WallSurface& surface, Rows& rows, const Periods& periods,
                              const StepConstants& constants, const std::vector<Material>& materials,
                              Border& border);
@@ -87,6 +99,8 @@ class WallContacts {
   std::vector<std::int64_t> features_;
   AlignedVector<double> displacement_[3];
   ContactColumns varied_;
+  AlignedVector<double> touch_sum_;  ///< by plane contact; empty: none are recorded
+  std::vector<TouchSum> left_;       ///< of rows and walls: at edges, and of contacts before
   std::int64_t plane_count_ = 0;
   std::vector<WallMemory> memories_;
   bool restored_ = false;

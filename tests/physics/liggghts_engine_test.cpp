@@ -200,6 +200,28 @@ TEST(LiggghtsEngine, touches_neither_open_boundaries_nor_heat) {
   EXPECT_EQ(bed.step, 200);
 }
 
+// Positions run on across periods. Planted: handed over as they are, spheres outside the box are lost.
+TEST(LiggghtsEngine, spheres_many_periods_away_meet_as_their_images_do) {
+  const auto after = [](double x_shift, bool native) {
+    Bed bed = alumina_bed();
+    bed.box = {{0, 0, 0}, {0.02, 0.01, 0.01}};
+    bed.periodic = {true, true, false};
+    bed.add({0.0195 + x_shift, 5e-3, 5e-3}, {0.5, 0.1, 0}, radius, 300);
+    bed.add({0.0013, 5e-3 - 0.01, 5.2e-3}, {-0.2, 0.1, 0}, radius,
+            300);  // meets the first across both borders
+    const auto engine = native ? make_native_engine(bed, {}, 1e-6, 1) : make_liggghts_engine({}, 1e-6);
+    for (int k = 1; k <= 50; ++k) engine->advance(bed, k * 1e-4);
+    bed.position_m[0].x -= x_shift;
+    return bed;
+  };
+  const Bed want = after(0, true);
+  EXPECT_GT(std::abs(want.velocity_m_s[0].z), 0.01);  // they have met
+  for (const double shift : {0.0, 0.02, -0.08, 0.2}) {
+    const Bed got = after(shift, false);
+    for (int i = 0; i < 2; ++i) EXPECT_LT(norm(got.position_m[i] - want.position_m[i]), 1e-5) << shift;
+  }
+}
+
 TEST(LiggghtsEngine, says_what_it_cannot_do) {
   Scene scene;
   scene.materials = alumina_bed().materials;
