@@ -8,7 +8,7 @@
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
 #include "dem/bed/solid_fraction.h"
-#include "dem/bed/wall_distance.h"
+#include "dem/bed/wall_shape.h"
 #include "raytrace/facets.h"
 
 namespace granrad {
@@ -29,12 +29,9 @@ double tolerance_m(const Bed& bed) {
 
 /// Whether the wall has some part in the region or on its boundary, more than a common edge.
 bool touches(const Wall& wall, const Box& region, double tolerance) {
+  const Box bounds = bounds_of(wall);
   for (int axis = 0; axis < 3; ++axis) {
-    double low = wall.vertices[0][axis], high = low;
-    for (const auto& v : wall.vertices) {
-      low = std::min(low, v[axis]);
-      high = std::max(high, v[axis]);
-    }
+    const double low = bounds.min[axis], high = bounds.max[axis];
     const double shared = std::min(high, region.max[axis]) - std::max(low, region.min[axis]);
     if (shared < -tolerance || (high - low > tolerance && shared < tolerance)) return false;
   }
@@ -42,13 +39,12 @@ bool touches(const Wall& wall, const Box& region, double tolerance) {
 }
 
 bool is_face_of(const Box& box, const Wall& wall, double tolerance) {
-  if (!wall.is_polygon()) return false;
+  const Box bounds = bounds_of(wall);
   const auto lies_at = [&](int axis, double place) {
-    return std::all_of(wall.vertices.begin(), wall.vertices.end(),
-                       [&](const Vec3& v) { return std::abs(v[axis] - place) <= tolerance; });
+    return std::abs(bounds.min[axis] - place) <= tolerance && std::abs(bounds.max[axis] - place) <= tolerance;
   };
   for (int axis = 0; axis < 3; ++axis)
-    if (lies_at(axis, box.min[axis]) || lies_at(axis, box.max[axis])) return true;
+    if (lies_at(axis, box.min[axis]) || lies_at(axis, box.max[axis])) return plane_of(wall).has_value();
   return false;
 }
 
@@ -56,7 +52,7 @@ void refuse_spheres_behind_box_walls(const Bed& bed, const Enclosure& enclosure,
   std::vector<std::string> problems;
   for (const Wall& wall : enclosure.walls) {
     if (!wall.contact || !is_face_of(bed.box, wall, tolerance)) continue;
-    const Vec3 normal = polygon_normal(wall);
+    const Vec3 normal = plane_of(wall)->normal;
     std::size_t behind = 0, first = 0;
     for (std::size_t s = 0; s < enclosure.sphere_count(); ++s)
       if (dot(normal, enclosure.centre_m[s] - wall.vertices[0]) < 0 && behind++ == 0) first = s;
@@ -69,52 +65,81 @@ void refuse_spheres_behind_box_walls(const Bed& bed, const Enclosure& enclosure,
   if (!problems.empty()) throw InputError(problems);
 }
 
-/// Where corner `corner` of a polygon goes when the plane it lies on moves by `distance` against `normal`:
-/// along the polygon's edge that leaves the plane. Empty when both edges stay in the plane.
-std::optional<Vec3> slide_along_edge(const Wall& polygon, std::size_t corner, const Vec3& normal,
-                                     double distance, double tolerance) {
-  const std::size_t n = polygon.vertices.size();
-  const Vec3& v = polygon.vertices[corner];
+/// Where corner `corner` of a planar wall goes when the plane it lies on moves by `distance` against `normal`:
+/// along the polygon's edge that leaves the plane, or, in a wall of several faces, straight down its plane.
+/// Empty when the wall does not leave the plane there.
+std::optional<Vec3> slide(const Wall& wall, const WallPlane& plane, std::size_t corner, const Vec3& normal,
+                          double distance, double tolerance) {
+  const std::size_t n = wall.vertices.size();
+  const Vec3& v = wall.vertices[corner];
+  if (face_count(wall) > 1) {
+    const Vec3 down = dot(normal, plane.normal) * plane.normal - normal;
+    const double slope = -dot(normal, down);
+    return slope > same_place ? std::optional(v + down * (distance / slope)) : std::nullopt;
+  }
   for (const std::size_t next : {(corner + 1) % n, (corner + n - 1) % n}) {
-    const Vec3 edge = v - polygon.vertices[next];
+    const Vec3 edge = v - wall.vertices[next];
     const double slope = -dot(normal, edge);
     if (slope > tolerance) return v + edge * (distance / slope);
   }
   return std::nullopt;
 }
 
-/// Moves polygon `moved` by `distance` against its normal and stretches the polygons with a corner on it.
+/// Moves planar wall `moved` by `distance` against its normal and stretches the planar walls with a corner on
+/// it.
 void move_outwards(std::vector<Wall>& walls, std::size_t moved, double distance, double tolerance) {
-  const Vec3 normal = polygon_normal(walls[moved]);
-  const WallFace face = faces_of(walls[moved]).front();
+  const Vec3 normal = plane_of(walls[moved])->normal;
+  const std::vector<WallFace> faces = faces_of(walls[moved]);
+  const auto on_it = [&](const Vec3& p) {
+    return std::any_of(faces.begin(), faces.end(),
+                       [&](const WallFace& face) { return distance_to(face, p) <= tolerance; });
+  };
   Wall placed = walls[moved];
   for (auto& v : placed.vertices) v -= normal * distance;
   for (std::size_t w = 0; w < walls.size(); ++w) {
-    if (w == moved || !walls[w].is_polygon()) continue;
+    const auto plane = plane_of(walls[w]);
+    if (w == moved || !plane) continue;
     const Wall before = walls[w];
     for (std::size_t k = 0; k < before.vertices.size(); ++k) {
-      if (distance_to(face, before.vertices[k]) > tolerance) continue;
-      const auto slid = slide_along_edge(before, k, normal, distance, tolerance);
+      if (!on_it(before.vertices[k])) continue;
+      const auto slid = slide(before, *plane, k, normal, distance, tolerance);
       if (!slid) continue;
       walls[w].vertices[k] = *slid;
-      for (std::size_t c = 0; c < face.vertices.size(); ++c)
-        if (norm(face.vertices[c] - before.vertices[k]) <= tolerance) placed.vertices[c] = *slid;
+      for (std::size_t c = 0; c < placed.vertices.size(); ++c)
+        if (norm(walls[moved].vertices[c] - before.vertices[k]) <= tolerance) placed.vertices[c] = *slid;
     }
   }
   walls[moved] = std::move(placed);
 }
 
+/// How far a planar wall must move back for its plane to clear every sphere before it.
+double protrusion_m(const Enclosure& enclosure, const WallPlane& plane, double tolerance) {
+  double distance = 0;
+  for (std::size_t s = 0; s < enclosure.sphere_count(); ++s) {
+    const double height = plane.height(enclosure.centre_m[s]), r = enclosure.radius_m[s];
+    if (height >= -tolerance && height < r) distance = std::max(distance, r * (1 + clearance) - height);
+  }
+  return distance;
+}
+
+/// Walls without contact in one plane (zones of the end of a channel) move together.
 void clear_spheres(Enclosure& enclosure, double tolerance) {
+  std::vector<char> done(enclosure.walls.size(), 0);
   for (std::size_t w = 0; w < enclosure.walls.size(); ++w) {
-    const Wall& wall = enclosure.walls[w];
-    if (wall.contact || !wall.is_polygon()) continue;
-    const Vec3 normal = polygon_normal(wall);
-    double distance = 0;
-    for (std::size_t s = 0; s < enclosure.sphere_count(); ++s) {
-      const double height = dot(normal, enclosure.centre_m[s] - wall.vertices[0]), r = enclosure.radius_m[s];
-      if (height >= -tolerance && height < r) distance = std::max(distance, r * (1 + clearance) - height);
+    const auto plane = plane_of(enclosure.walls[w]);
+    if (done[w] || enclosure.walls[w].contact || !plane) continue;
+    std::vector<std::size_t> together;
+    for (std::size_t v = w; v < enclosure.walls.size(); ++v) {
+      const auto other = plane_of(enclosure.walls[v]);
+      if (enclosure.walls[v].contact || !other || dot(other->normal, plane->normal) < 1 - same_place ||
+          std::abs(plane->height(other->point)) > tolerance)
+        continue;
+      together.push_back(v);
+      done[v] = 1;
     }
-    if (distance > 0) move_outwards(enclosure.walls, w, distance, tolerance);
+    const double distance = protrusion_m(enclosure, *plane, tolerance);
+    for (const auto v : together)
+      if (distance > 0) move_outwards(enclosure.walls, v, distance, tolerance);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "dem/base/constants.h"
+#include "dem/bed/wall_shape.h"
 
 namespace granrad {
 
@@ -38,11 +39,10 @@ double exact_two_sphere(double r1, double r2, double s) {
   return (whole_part + lens_part) / (2 * pi * r1 * r1);
 }
 
-double exact_sphere_polygon(const Vec3& centre, const Wall& polygon) {
-  const auto& v = polygon.vertices;
+double exact_sphere_wall(const Vec3& centre, const Wall& wall) {
   double solid_angle = 0;
-  for (std::size_t k = 1; k + 1 < v.size(); ++k) {  // van Oosterom and Strackee 1983
-    const Vec3 a = v[0] - centre, b = v[k] - centre, c = v[k + 1] - centre;
+  for (const auto& triangle : triangles_of(wall)) {  // van Oosterom and Strackee 1983
+    const Vec3 a = triangle[0] - centre, b = triangle[1] - centre, c = triangle[2] - centre;
     const double la = norm(a), lb = norm(b), lc = norm(c);
     const double volume = dot(a, cross(b, c));
     const double below = la * lb * lc + dot(a, b) * lc + dot(a, c) * lb + dot(b, c) * la;

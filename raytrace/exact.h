@@ -15,9 +15,9 @@ namespace granrad {
 /// r2 is read as touching.
 double exact_two_sphere(double r1, double r2, double s);
 
-/// View factor from a sphere to a planar polygon that does not cut it: solid angle at the centre / 4 pi,
-/// whatever the radius. Zero from behind the polygon.
-double exact_sphere_polygon(const Vec3& centre, const Wall& polygon);
+/// View factor from a sphere to a planar wall that does not cut it: solid angle at the centre / 4 pi,
+/// whatever the radius. Zero from behind the wall.
+double exact_sphere_wall(const Vec3& centre, const Wall& wall);
 
 /// Directly opposed parallel rectangles a x b, c apart (Howell's catalogue C-11).
 double exact_parallel_rectangles(double a, double b, double c);

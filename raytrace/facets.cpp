@@ -7,6 +7,7 @@
 
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
+#include "dem/bed/wall_shape.h"
 
 namespace granrad {
 
@@ -31,43 +32,43 @@ std::vector<Vec3> large_square(const Vec3& normal, double offset, double half_wi
   return {foot - u - v, foot + u - v, foot + u + v, foot - u + v};
 }
 
-double polygon_area(const std::vector<Vec3>& vertices) {
-  return vertices.size() < 3 ? 0 : granrad::area(Wall{.vertices = vertices});
-}
-
 }  // namespace
 
 void Facets::add(const Wall& wall, std::int32_t number, const Vec3& origin, double scale) {
-  std::vector<Vec3> moved;
-  for (const Vec3& v : wall.vertices) moved.push_back((v - origin) * scale);
-  if (!wall.is_polygon()) {
-    for (const auto& t : wall.triangles) {
-      const Vec3 doubled = cross(moved[t[1]] - moved[t[0]], moved[t[2]] - moved[t[0]]);
-      if (norm(doubled) > tolerance_ * tolerance_) add_piece({moved[t[0]], moved[t[1]], moved[t[2]]}, number);
-    }
-    return;
-  }
-  if (moved.size() < 3 || !(polygon_area(moved) > tolerance_ * tolerance_))
-    throw InputError(
-        fmt::format("wall '{}': {} vertices without area (a polygon needs three that are not "
-                    "on a line)",
-                    wall.name, moved.size()));
-  add_piece(moved, number);
-  const std::int32_t facet = count() - 1;
-  double size = 0;
-  for (const Vec3& v : moved) size = std::max(size, norm(v - moved[0]));
-  for (const Vec3& v : moved) {
-    if (std::abs(height(facet, v)) > 1e-6 * size)
+  std::vector<WallFace> faces = faces_of(wall);
+  const bool only = faces.size() == 1;
+  for (auto& face : faces) {
+    for (Vec3& v : face.vertices) v = (v - origin) * scale;
+    const bool has_area =
+        face.vertices.size() >= 3 && 2 * polygon_area(face.vertices) > tolerance_ * tolerance_;
+    if (has_area) {
+      add_piece(std::move(face.vertices), number);
+      refuse_bent(wall.name, count() - 1);
+    } else if (only) {
       throw InputError(
-          fmt::format("wall '{}': vertices are not in one plane (split it into planar polygons)", wall.name));
+          advised(fmt::format("wall '{}': {} vertices without area", wall.name, face.vertices.size()),
+                  "a polygon needs three that are not on a line"));
+    }
+  }
+}
+
+/// Triangles are planar and convex whatever their corners.
+void Facets::refuse_bent(const std::string& name, std::int32_t facet) const {
+  const auto& corners = vertices(facet);
+  if (corners.size() == 3) return;
+  double size = 0;
+  for (const Vec3& v : corners) size = std::max(size, norm(v - corners[0]));
+  for (const Vec3& v : corners) {
+    if (std::abs(height(facet, v)) > 1e-6 * size)
+      throw InputError(advised(fmt::format("wall '{}': vertices are not in one plane", name),
+                               "split it into planar polygons"));
     if (edge_margin(facet, v) < -1e-6 * size)
-      throw InputError(fmt::format("wall '{}': not convex (split it into convex polygons)", wall.name));
+      throw InputError(advised(fmt::format("wall '{}': not convex", name), "split it into convex polygons"));
   }
 }
 
 void Facets::add_piece(std::vector<Vec3> vertices, std::int32_t wall) {
-  const Wall polygon{.vertices = vertices};
-  const Vec3 n = polygon_normal(polygon);
+  const Vec3 n = polygon_normal(vertices);
   double offset = 0;
   for (const Vec3& v : vertices) offset += dot(n, v) / static_cast<double>(vertices.size());
   for (std::size_t k = 0; k < vertices.size(); ++k) {
@@ -78,7 +79,7 @@ void Facets::add_piece(std::vector<Vec3> vertices, std::int32_t wall) {
   }
   normal_.push_back(n);
   offset_.push_back(offset);
-  area_.push_back(granrad::area(polygon));
+  area_.push_back(polygon_area(vertices));
   wall_.push_back(wall);
   edge_begin_.push_back(static_cast<std::int32_t>(edges_.size()));
   vertices_.push_back(std::move(vertices));
@@ -166,7 +167,7 @@ std::optional<ConvexCell> ConvexCell::from(const Facets& facets) {
       if (&other != &face) whole = clipped(whole, facets.normal(other[0]), facets.offset(other[0]));
     double covered = 0;
     for (const std::int32_t f : face) covered += facets.area(f);
-    const double area = polygon_area(whole);
+    const double area = whole.size() < 3 ? 0 : polygon_area(whole);
     if (std::abs(covered - area) > 1e-6 * area) return {};
   }
   for (const auto& face : cell.faces_)

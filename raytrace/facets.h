@@ -14,7 +14,7 @@ struct FacetHit {
   std::int32_t facet;  ///< -1: none
 };
 
-/// Planar convex pieces of the walls (a polygon, or each triangle of a mesh), tested in double precision.
+/// The faces of walls, tested in double precision.
 /// Edges are widened by `tolerance` for rays that arrive from the front, so that none slips between two
 /// pieces that share an edge, and narrowed by it for rays that arrive from behind, so that a sharp edge
 /// does not report its own back. The unit of length is the caller's.
@@ -51,6 +51,7 @@ class Facets {
  private:
   double moment(std::int32_t facet, int axis) const;
   void add_piece(std::vector<Vec3> vertices, std::int32_t wall);
+  void refuse_bent(const std::string& name, std::int32_t facet) const;
 
   struct Edge {
     Vec3 inward;  ///< unit, in the plane

@@ -13,6 +13,7 @@
 #include "dem/base/program.h"
 #include "dem/base/text_file.h"
 #include "dem/bed/solid_fraction.h"
+#include "dem/bed/wall_shape.h"
 #include "dem/io/snapshot.h"
 
 namespace granrad {
@@ -61,7 +62,7 @@ std::vector<RadiationSettings> choose_compared(const Case& c) {
   if (!c.heat.validate.compared.empty()) return c.heat.validate.compared;
   std::vector<RadiationSettings> all = {source(c, RadiationKind::correlation, 0),
                                         source(c, RadiationKind::embree, 2000)};
-  if (!any_wall(c, [](const Wall& w) { return !w.is_polygon(); }))
+  if (!any_wall(c, [](const Wall& w) { return !plane_of(w); }))
     all.push_back(source(c, RadiationKind::lines, 24000));
   if (!any_wall(c, [](const Wall& w) { return w.role == WallRole::excluded; }))
     all.push_back(source(c, RadiationKind::paths, 10000));

@@ -119,7 +119,7 @@ Conductances conductances(const Bed& bed, const NearPairs& pairs, const Conducti
   for (std::size_t k = 0; k < pairs.walls.size(); ++k) {
     const auto [i, wall, distance] = pairs.walls[k];
     WallConductance& g = result.walls[k] = {i, wall, 0, 0};
-    if (!inside(i) || bed.walls[wall].role != WallRole::isothermal) continue;
+    if (!inside(i) || !conducts(bed.walls[wall])) continue;
     const double r = bed.radius_m[i];
     g.solid_W_K = contact(bed.material[i], bed.material[i]) * std::sqrt(wall_contact_area_m2(r, distance));
     g.gas_W_K = gas_conductance_to_wall(settings.gas, r, distance);

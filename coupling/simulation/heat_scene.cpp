@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "dem/base/error.h"
+#include "dem/bed/wall_shape.h"
 #include "dem/engine_liggghts.h"
 #include "fit/correlation/correlation.h"
 #include "raytrace/paths/path_tracer.h"
@@ -83,11 +84,12 @@ void check_source_against_walls(TomlTable& table, RadiationKind kind, const Scen
                     fmt::format("= {} (wall {} is excluded: only view factors can drop a wall before "
                                 "closure); make it adiabatic, or choose embree, lines or correlation",
                                 name, wall.name));
-    if (needs_planes && !wall.is_polygon())
-      table.problem("source",
-                    fmt::format("= {} (wall {} is a mesh: this source knows planar walls only); choose "
-                                "paths or embree",
-                                name, wall.name));
+    if (needs_planes && !plane_of(wall))
+      table.problem(
+          "source",
+          fmt::format("= {} (wall {} is not in one plane: this source knows planar walls only); choose "
+                      "paths or embree",
+                      name, wall.name));
   }
 }
 

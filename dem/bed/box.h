@@ -21,9 +21,16 @@ struct Box {
     }
   }
   Vec3 size() const { return max - min; }
+  Vec3 middle() const { return 0.5 * (min + max); }
   double volume() const { return size().x * size().y * size().z; }
   bool contains(const Vec3& p) const {
     return p.x >= min.x && p.x <= max.x && p.y >= min.y && p.y <= max.y && p.z >= min.z && p.z <= max.z;
+  }
+  /// Whether the two have a point in common, or come within `margin` of it along every axis.
+  bool meets(const Box& other, double margin = 0) const {
+    for (int axis = 0; axis < 3; ++axis)
+      if (min[axis] > other.max[axis] + margin || other.min[axis] > max[axis] + margin) return false;
+    return true;
   }
 };
 

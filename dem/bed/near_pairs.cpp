@@ -9,7 +9,7 @@
 
 #include "dem/base/error.h"
 #include "dem/bed/cell_grid.h"
-#include "dem/bed/wall_distance.h"
+#include "dem/bed/wall_shape.h"
 
 namespace granrad {
 
@@ -122,7 +122,7 @@ std::vector<NearWall> find_walls(const Bed& bed, const std::vector<SizeClass>& c
   std::vector<NearWall> found;
   for (std::size_t w = 0; w < bed.walls.size(); ++w) {
     const Wall& wall = bed.walls[w];
-    if (!wall.contact || bed.time_s >= wall.opens_at_s) continue;
+    if (!stands(wall, bed.time_s)) continue;
     for (const WallFace& face : faces_of(wall))
       for (const Vec3& shift : image_shifts(bed))
         for (const SizeClass& c : classes) {

@@ -18,33 +18,10 @@ const char* to_string(WallRole role) {
   return "?";
 }
 
-namespace {
-/// Twice the vector area of a polygon: sum of the cross products of its edges' ends.
-Vec3 twice_vector_area(const std::vector<Vec3>& v) {
-  Vec3 sum;
-  for (std::size_t k = 1; k + 1 < v.size(); ++k) sum += cross(v[k] - v[0], v[k + 1] - v[0]);
-  return sum;
-}
-}  // namespace
-
-double area(const Wall& wall) {
-  if (wall.is_polygon()) return 0.5 * norm(twice_vector_area(wall.vertices));
-  double sum = 0;
-  for (const auto& t : wall.triangles) {
-    const Vec3& a = wall.vertices[t[0]];
-    sum += 0.5 * norm(cross(wall.vertices[t[1]] - a, wall.vertices[t[2]] - a));
-  }
-  return sum;
-}
-
-Vec3 polygon_normal(const Wall& wall) {
-  return normalized(twice_vector_area(wall.vertices));
-}
-
 double next_opening_s(const std::vector<Wall>& walls, double time_s) {
   double next = infinity;
   for (const auto& w : walls)
-    if (w.contact && w.opens_at_s > time_s) next = std::min(next, w.opens_at_s);
+    if (stands(w, time_s)) next = std::min(next, w.opens_at_s);
   return next;
 }
 

@@ -19,27 +19,33 @@ enum class WallRole {
 
 const char* to_string(WallRole role);
 
-/// A wall: a planar convex polygon (no triangles), or a triangle mesh (triangles index `vertices`).
-/// The right-hand normal of polygon and triangles points to the side where the particles are; that side
-/// radiates. Contact works from both sides.
+/// A wall: where it is, its thermal condition and its contact. Its shape is a set of convex planar faces; the
+/// right-hand normal of a face points to the side where the particles are, and that side radiates. Contact
+/// works from both sides. What can be asked of the shape is in wall_shape.h: nothing else looks into it.
 struct Wall {
   std::string name{};
-  std::vector<Vec3> vertices{};
-  std::vector<std::array<std::int32_t, 3>> triangles{};
+  std::vector<Vec3> vertices{};  ///< of one convex polygon, or those `triangles` index
+  std::vector<std::array<std::int32_t, 3>> triangles{};  ///< none: the vertices are one polygon
   WallRole role = WallRole::adiabatic;
   double temperature_K = 300;
   double emissivity = 1;
   bool contact = true;  ///< particles touch it; false: a radiating boundary only (the ends of a channel)
   Vec3 velocity_m_s{};  ///< of the sliding surface (a belt), along it; the geometry does not move
-  double opens_at_s = infinity;  ///< a shutter: no contact from then on
-
-  bool is_polygon() const { return triangles.empty(); }
+  double opens_at_s = infinity;  ///< a shutter: gone from then on
 };
 
-/// Area in m^2 of polygon or mesh.
-double area(const Wall& wall);
-/// Unit normal of a polygon wall (Newell's method). Precondition: is_polygon().
-Vec3 polygon_normal(const Wall& wall);
+/// Whether the wall has a temperature of its own that it gives to what touches it.
+inline bool conducts(const Wall& wall) {
+  return wall.role == WallRole::isothermal;
+}
+/// Whether it is there at `time_s`: not a shutter that has opened.
+inline bool exists(const Wall& wall, double time_s) {
+  return time_s < wall.opens_at_s;
+}
+/// Whether particles touch it at `time_s`.
+inline bool stands(const Wall& wall, double time_s) {
+  return wall.contact && exists(wall, time_s);
+}
 
 /// The next time after `time_s` at which a shutter that particles touch opens, or infinity.
 double next_opening_s(const std::vector<Wall>& walls, double time_s);

@@ -5,6 +5,7 @@
 
 #include "dem/base/error.h"
 #include "dem/base/hdf5_file.h"
+#include "dem/bed/wall_columns.h"
 #include "dem/io/frame_layout.h"
 #include "dem/io/snapshot.h"
 
@@ -133,51 +134,22 @@ class FrameReader {
 
   void read_walls(Bed& bed) const {
     const std::string at = "/granrad/walls/";
-    const auto names = in_.read_texts(at + "name");
-    const auto role = in_.read<std::int32_t>(at + "role"),
-               corners = in_.read<std::int32_t>(at + "triangles", 3);
-    const auto contact = in_.read<std::uint8_t>(at + "contact");
-    const auto temperature = in_.read<double>(at + "temperature_K"),
-               emissivity = in_.read<double>(at + "emissivity"),
-               opens_at = in_.read<double>(at + "opens_at_s");
-    const auto velocity = read_values<Vec3>(in_, at + "velocity_m_s"),
-               vertices = read_values<Vec3>(in_, at + "vertices_m");
-    const auto vertex_begin = in_.read<std::int64_t>(at + "vertex_begin"),
-               triangle_begin = in_.read<std::int64_t>(at + "triangle_begin");
-    const std::size_t n = names.size();
-    const auto ranges = [n](const std::vector<std::int64_t>& begin, std::size_t total) {
-      return begin.size() == n + 1 && begin.front() == 0 && std::is_sorted(begin.begin(), begin.end()) &&
-             begin.back() == static_cast<std::int64_t>(total);
-    };
-    sound(role.size() == n && contact.size() == n && temperature.size() == n && emissivity.size() == n &&
-              opens_at.size() == n && velocity.size() == n && ranges(vertex_begin, vertices.size()) &&
-              ranges(triangle_begin, corners.size() / 3),
-          "the length of a wall column");
-    for (std::size_t w = 0; w < n; ++w) {
-      Wall wall;
-      wall.name = names[w];
-      sound(role[w] >= 0 && role[w] <= static_cast<std::int32_t>(WallRole::excluded),
-            "the role of wall " + names[w]);
-      wall.role = static_cast<WallRole>(role[w]);
-      wall.contact = contact[w];
-      wall.temperature_K = temperature[w];
-      wall.emissivity = emissivity[w];
-      wall.opens_at_s = opens_at[w];
-      wall.velocity_m_s = velocity[w];
-      sound(std::isfinite(temperature[w]) && std::isfinite(emissivity[w]) && is_finite(velocity[w]) &&
-                !std::isnan(opens_at[w]),
-            "wall " + names[w]);
-      wall.vertices.assign(vertices.begin() + vertex_begin[w], vertices.begin() + vertex_begin[w + 1]);
-      for (auto t = triangle_begin[w]; t < triangle_begin[w + 1]; ++t) {
-        wall.triangles.push_back({corners[3 * t], corners[3 * t + 1], corners[3 * t + 2]});
-        for (const auto corner : wall.triangles.back())
-          sound(corner >= 0 && corner < static_cast<std::int32_t>(wall.vertices.size()),
-                "a triangle of " + names[w]);
-      }
-      sound(wall.vertices.size() >= 3 && std::all_of(wall.vertices.begin(), wall.vertices.end(),
-                                                     [](const Vec3& v) { return is_finite(v); }),
-            "the vertices of wall " + names[w]);
-      bed.walls.push_back(std::move(wall));
+    WallColumns c;
+    c.name = in_.read_texts(at + "name");
+    c.role = in_.read<std::int32_t>(at + "role");
+    c.contact = in_.read<std::uint8_t>(at + "contact");
+    c.temperature_K = in_.read<double>(at + "temperature_K");
+    c.emissivity = in_.read<double>(at + "emissivity");
+    c.opens_at_s = in_.read<double>(at + "opens_at_s");
+    c.velocity_m_s = read_values<Vec3>(in_, at + "velocity_m_s");
+    c.vertices_m = read_values<Vec3>(in_, at + "vertices_m");
+    c.vertex_begin = in_.read<std::int64_t>(at + "vertex_begin");
+    c.triangles = in_.read<std::int32_t>(at + "triangles", 3);
+    c.triangle_begin = in_.read<std::int64_t>(at + "triangle_begin");
+    try {
+      bed.walls = walls_from(c);
+    } catch (const InputError& error) {
+      sound(false, error.what());
     }
   }
 

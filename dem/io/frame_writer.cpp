@@ -7,6 +7,7 @@
 #include "dem/base/error.h"
 #include "dem/base/hdf5_file.h"
 #include "dem/base/program.h"
+#include "dem/bed/wall_columns.h"
 #include "dem/io/frame_layout.h"
 #include "dem/io/snapshot.h"
 
@@ -90,37 +91,19 @@ void write_materials(Hdf5Writer& out, const std::vector<Material>& materials) {
 }
 
 void write_walls(Hdf5Writer& out, const std::vector<Wall>& walls) {
-  std::vector<std::string> names;
-  std::vector<std::int32_t> role, corners;
-  std::vector<std::uint8_t> contact;
-  std::vector<double> temperature, emissivity, opens_at;
-  std::vector<Vec3> velocity, vertices;
-  std::vector<std::int64_t> vertex_begin{0}, triangle_begin{0};
-  for (const auto& w : walls) {
-    names.push_back(w.name);
-    role.push_back(static_cast<std::int32_t>(w.role));
-    contact.push_back(w.contact);
-    temperature.push_back(w.temperature_K);
-    emissivity.push_back(w.emissivity);
-    opens_at.push_back(w.opens_at_s);
-    velocity.push_back(w.velocity_m_s);
-    vertices.insert(vertices.end(), w.vertices.begin(), w.vertices.end());
-    for (const auto& t : w.triangles) corners.insert(corners.end(), t.begin(), t.end());
-    vertex_begin.push_back(static_cast<std::int64_t>(vertices.size()));
-    triangle_begin.push_back(static_cast<std::int64_t>(corners.size() / 3));
-  }
+  const WallColumns c = columns_of(walls);
   const std::string at = "/granrad/walls/";
-  out.write(at + "name", names);
-  out.write(at + "role", role);
-  out.write(at + "contact", contact);
-  out.write(at + "temperature_K", temperature);
-  out.write(at + "emissivity", emissivity);
-  out.write(at + "opens_at_s", opens_at);
-  write_values(out, at + "velocity_m_s", velocity);
-  write_values(out, at + "vertices_m", vertices);
-  out.write(at + "vertex_begin", vertex_begin);
-  out.write(at + "triangles", corners.data(), corners.size() / 3, 3);
-  out.write(at + "triangle_begin", triangle_begin);
+  out.write(at + "name", c.name);
+  out.write(at + "role", c.role);
+  out.write(at + "contact", c.contact);
+  out.write(at + "temperature_K", c.temperature_K);
+  out.write(at + "emissivity", c.emissivity);
+  out.write(at + "opens_at_s", c.opens_at_s);
+  write_values(out, at + "velocity_m_s", c.velocity_m_s);
+  write_values(out, at + "vertices_m", c.vertices_m);
+  out.write(at + "vertex_begin", c.vertex_begin);
+  out.write(at + "triangles", c.triangles.data(), c.triangles.size() / 3, 3);
+  out.write(at + "triangle_begin", c.triangle_begin);
 }
 
 void write_state(Hdf5Writer& out, const StateBlocks& state) {

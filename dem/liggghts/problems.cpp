@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "dem/base/error.h"
+#include "dem/bed/wall_shape.h"
 #include "dem/engine_liggghts.h"
 
 namespace granrad {

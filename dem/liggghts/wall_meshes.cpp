@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "dem/base/constants.h"
-#include "dem/bed/wall_distance.h"
+#include "dem/bed/wall_shape.h"
 
 namespace granrad::liggghts {
 
@@ -33,12 +33,12 @@ std::vector<Vec3> inside_periods(std::vector<Vec3> polygon, const Bed& bed) {
 
 WallMeshes::WallMeshes(const Bed& bed) {
   for (const auto& wall : bed.walls) {
-    const bool stands = wall.contact && bed.time_s < wall.opens_at_s;
+    const bool standing = stands(wall, bed.time_s);
     for (const auto& face : faces_of(wall)) {
       const auto number = static_cast<std::int64_t>(first_.size());
       first_.push_back({0, -1});
       const auto corners = inside_periods(face.vertices, bed);
-      if (stands && corners.size() > 2) add(wall, corners, number);
+      if (standing && corners.size() > 2) add(wall, corners, number);
     }
   }
 }
@@ -52,8 +52,8 @@ void WallMeshes::add(const Wall& wall, const std::vector<Vec3>& corners, std::in
   }
   const auto number = static_cast<std::size_t>(mesh - meshes_.begin());
   first_[face] = {number, static_cast<std::int32_t>(mesh->triangles.size())};
-  for (std::size_t k = 2; k < corners.size(); ++k) {
-    mesh->triangles.push_back({corners[0], corners[k - 1], corners[k]});
+  for (const auto& triangle : triangulated(corners)) {
+    mesh->triangles.push_back(triangle);
     face_[number].push_back(face);
   }
 }
@@ -66,7 +66,7 @@ WallMeshes::Place WallMeshes::nearest(std::int64_t face, const Vec3& p) const {
   double least = infinity;
   for (auto t = static_cast<std::size_t>(best.triangle); t < faces.size() && faces[t] == face; ++t) {
     const auto& corners = meshes_[best.mesh].triangles[t];
-    const double distance = distance_to(Wall{.vertices = {corners.begin(), corners.end()}}, p);
+    const double distance = distance_to(make_face({corners.begin(), corners.end()}), p);
     if (distance < least) least = distance, best.triangle = static_cast<std::int32_t>(t);
   }
   return best;

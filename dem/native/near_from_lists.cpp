@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dem/bed/wall_distance.h"
+#include "dem/bed/wall_shape.h"
 
 namespace granrad::native {
 namespace {

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "dem/base/constants.h"
+#include "dem/bed/wall_shape.h"
 
 namespace granrad::native {
 namespace {
@@ -13,12 +14,6 @@ namespace {
 /// Facets count as coplanar when their corners leave the common plane by less than this fraction of their
 /// size: the rounding of STL files in single precision.
 constexpr double coplanar_tolerance = 1e-6;
-
-Vec3 newell_normal(const std::vector<Vec3>& p) {
-  Vec3 sum;
-  for (std::size_t k = 1; k + 1 < p.size(); ++k) sum += cross(p[k] - p[0], p[k + 1] - p[0]);
-  return normalized(sum);
-}
 
 double distance_to_segment(const Vec3& p, const Vec3& start, const Vec3& direction, double length) {
   const double t = std::clamp(dot(p - start, direction), 0.0, length);
@@ -29,10 +24,7 @@ double distance_to_segment(const Vec3& p, const Vec3& start, const Vec3& directi
 
 WallSurface::WallSurface(const std::vector<Wall>& walls) {
   for (std::size_t w = 0; w < walls.size(); ++w) {
-    const auto number = static_cast<std::int32_t>(w);
-    if (walls[w].is_polygon()) add_facet(number, walls[w].vertices);
-    for (const auto& t : walls[w].triangles)
-      add_facet(number, {walls[w].vertices[t[0]], walls[w].vertices[t[1]], walls[w].vertices[t[2]]});
+    for (const auto& face : faces_of(walls[w])) add_facet(static_cast<std::int32_t>(w), face.vertices);
   }
   std::map<std::tuple<double, double, double>, std::int32_t> number_of;
   std::vector<Vec3> welded;
@@ -55,17 +47,14 @@ void WallSurface::add_facet(std::int32_t wall, const std::vector<Vec3>& corners)
   f.wall = wall;
   f.group = facet_count();
   f.point = corners[0];
-  f.normal = newell_normal(corners);
+  f.normal = polygon_normal(corners);
   if (!is_finite(f.normal)) {  // a triangle without area
     whole_ = false;
     return;
   }
   f.bounds = {corners[0], corners[0]};
   for (const auto& c : corners) {
-    for (int a = 0; a < 3; ++a) {
-      f.bounds.min[a] = std::min(f.bounds.min[a], c[a]);
-      f.bounds.max[a] = std::max(f.bounds.max[a], c[a]);
-    }
+    f.bounds.include(c);
     f.corners.push_back(static_cast<std::int32_t>(vertices_.size()));
     vertices_.push_back(c);
   }
@@ -156,7 +145,7 @@ void WallSurface::fill_rows(const std::vector<Wall>& walls) {
 }
 
 void WallSurface::set_time(const std::vector<Wall>& walls, double time_s) {
-  for (auto& f : facets_) f.stands = walls[f.wall].contact && time_s < walls[f.wall].opens_at_s;
+  for (auto& f : facets_) f.stands = granrad::stands(walls[f.wall], time_s);
 }
 
 WallSurface::Side& WallSurface::side_of(std::int32_t facet, std::int32_t edge) {

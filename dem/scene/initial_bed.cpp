@@ -6,6 +6,7 @@
 
 #include "dem/base/error.h"
 #include "dem/bed/cell_grid.h"
+#include "dem/bed/wall_shape.h"
 #include "dem/io/snapshot.h"
 #include "dem/scene/scene.h"
 
@@ -95,9 +96,7 @@ void refuse_particles_behind_walls(const Scene& scene, const Bed& bed) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < bed.size(); ++i) {
     const Vec3 p = wrapped_into_box(bed, bed.position_m[i]);
-    const auto behind = [&](const Wall& wall) {
-      return wall.contact && dot(polygon_normal(wall), p - wall.vertices[0]) < 0;
-    };
+    const auto behind = [&](const Wall& wall) { return wall.contact && plane_of(wall)->height(p) < 0; };
     if (std::none_of(scene.walls.begin(), scene.walls.begin() + scene.box_wall_count, behind)) continue;
     if (count++ < examples_shown) outside.push_back(bed.id[i]);
   }

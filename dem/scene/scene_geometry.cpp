@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "dem/base/error.h"
-#include "dem/bed/wall_distance.h"
+#include "dem/bed/wall_shape.h"
 #include "dem/io/import_stl.h"
 #include "dem/scene/scene_parts.h"
 
@@ -122,7 +122,7 @@ class GeometryReader {
     double size = 0;
     for (const auto& p : v) size = std::max(size, norm(p - v[0]));
     if (!(area(wall) > flatness * size * size)) return "the polygon has no area, or crosses itself";
-    const Vec3 normal = polygon_normal(wall);
+    const Vec3 normal = polygon_normal(v);
     for (const auto& p : v)
       if (std::abs(dot(normal, p - v[0])) > flatness * size)
         return "the corners must lie in one plane; use triangles, or a [[mesh]]";
@@ -151,8 +151,7 @@ class GeometryReader {
       table.problem("file", error.what());
     }
     if (flip)
-      for (auto& wall : walls)
-        for (auto& triangle : wall.triangles) std::swap(triangle[1], triangle[2]);
+      for (auto& wall : walls) granrad::flip(wall);
     return walls;
   }
 

@@ -10,6 +10,7 @@
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
 #include "dem/bed/cell_grid.h"
+#include "dem/bed/wall_shape.h"
 #include "fit/correlation/wall_exchange.h"
 #include "raytrace/exact.h"
 
@@ -40,10 +41,10 @@ void refuse_what_a_table_cannot_serve(const CorrelationTable& table, const Enclo
           advice));
   }
   for (const auto& wall : enclosure.walls)
-    if (!wall.is_polygon())
-      problems.push_back(advised(
-          fmt::format("{}: wall {} is a mesh (correlations hold for planar walls)", table.name, wall.name),
-          advice));
+    if (!plane_of(wall))
+      problems.push_back(advised(fmt::format("{}: wall {} is not in one plane (correlations hold for planar walls)",
+                                             table.name, wall.name),
+                                 advice));
   for (int axis = 0; axis < 3; ++axis)
     if (enclosure.periodic[axis])
       problems.push_back(advised(
@@ -146,7 +147,7 @@ std::vector<std::vector<double>> unobstructed_factors(const Enclosure& enclosure
     auto& column = factors.emplace_back(enclosure.sphere_count());
 #pragma omp parallel for schedule(static)
     for (std::size_t i = 0; i < column.size(); ++i)
-      column[i] = exact_sphere_polygon(enclosure.centre_m[i], wall);
+      column[i] = exact_sphere_wall(enclosure.centre_m[i], wall);
   }
   return factors;
 }
@@ -159,7 +160,7 @@ std::vector<std::vector<double>> table_walls(const LocalCorrelation& correlation
   std::vector<std::vector<double>> x(enclosure.walls.size(), std::vector<double>(enclosure.sphere_count()));
   for (std::size_t w = 0; w < enclosure.walls.size(); ++w) {
     const Wall& wall = enclosure.walls[w];
-    const Vec3 normal = polygon_normal(wall);
+    const Vec3 normal = plane_of(wall)->normal;
     for (std::size_t i = 0; i < enclosure.sphere_count(); ++i) {
       const Vec3 centre = enclosure.centre_m[i];
       const double height = dot(centre - wall.vertices[0], normal);

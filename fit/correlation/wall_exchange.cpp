@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "dem/base/constants.h"
+#include "dem/bed/wall_shape.h"
 #include "raytrace/embree/embree_tracer.h"
 #include "raytrace/facets.h"
 #include "raytrace/rays/emission.h"
@@ -42,6 +43,7 @@ struct Shade {
 /// Adds what wall v sends through the bed to each wall; returns the fraction that meets none.
 double trace_wall(const Enclosure& empty, const Emitter& emitter, const Facets& facets, std::size_t v,
                   const Shade& shade, double* row) {
+  const bool planar = plane_of(empty.walls[v]).has_value();
   int missed = 0;
   for (int k = 0; k < rays_per_wall; ++k) {
     const auto u = low_discrepancy_point(k);
@@ -49,7 +51,7 @@ double trace_wall(const Enclosure& empty, const Emitter& emitter, const Facets& 
     double nearest = infinity;
     std::int32_t wall = -1;
     for (std::int32_t f = 0; f < facets.count(); ++f) {
-      if (facets.wall(f) == static_cast<std::int32_t>(v) && empty.walls[v].is_polygon()) continue;
+      if (planar && facets.wall(f) == static_cast<std::int32_t>(v)) continue;
       const double s = facets.front_crossing(f, ray.origin_m, ray.direction);
       if (s < nearest) nearest = s, wall = facets.wall(f);
     }

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "dem/base/error.h"
+#include "dem/bed/wall_shape.h"
 #include "fit/correlation/correlation_source.h"
 #include "fit/fitting/curve.h"
 #include "fit/fitting/distance_bins.h"
@@ -75,10 +76,10 @@ std::vector<std::size_t> chosen_walls(const SampleSet& set, const std::vector<st
   const auto& walls = set.enclosure.walls;
   const bool all = names.size() == 1 && names[0] == "all";
   double largest = 0;
-  for (const auto& wall : walls) largest = std::max(largest, wall.is_polygon() ? area(wall) : 0);
+  for (const auto& wall : walls) largest = std::max(largest, plane_of(wall) ? area(wall) : 0);
   for (std::size_t w = 0; w < walls.size(); ++w) {
     const bool named = std::find(names.begin(), names.end(), walls[w].name) != names.end();
-    if (walls[w].is_polygon() && (all || (names.empty() ? area(walls[w]) > 0.99 * largest : named)))
+    if (plane_of(walls[w]) && (all || (names.empty() ? area(walls[w]) > 0.99 * largest : named)))
       chosen.push_back(w);
   }
   if (chosen.empty())

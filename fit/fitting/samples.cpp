@@ -8,6 +8,7 @@
 
 #include "dem/base/error.h"
 #include "dem/bed/cell_grid.h"
+#include "dem/bed/wall_shape.h"
 #include "fit/correlation/correlation_source.h"
 #include "fit/correlation/unobstructed_pair.h"
 #include "raytrace/exact.h"
@@ -98,12 +99,12 @@ DistanceSamples pair_samples(const Enclosure& enclosure, const HitCounts& counts
 DistanceSamples wall_samples(const Enclosure& enclosure, const HitCounts& counts, std::size_t w) {
   DistanceSamples samples;
   const Wall& wall = enclosure.walls[w];
-  if (!wall.is_polygon()) return samples;
-  const Vec3 normal = polygon_normal(wall);
+  const auto plane = plane_of(wall);
+  if (!plane) return samples;
   for (std::size_t i = 0; i < enclosure.sphere_count(); ++i)
     add_sample(counts, i, enclosure.sphere_count() + w,
-               dot(enclosure.centre_m[i] - wall.vertices[0], normal) / (2 * enclosure.radius_m[i]),
-               exact_sphere_polygon(enclosure.centre_m[i], wall), samples);
+               plane->height(enclosure.centre_m[i]) / (2 * enclosure.radius_m[i]),
+               exact_sphere_wall(enclosure.centre_m[i], wall), samples);
   return samples;
 }
 

@@ -21,7 +21,7 @@ namespace {
 struct Query : RTCIntersectContext {
   Vec3 origin, direction;
   std::int32_t source_ball = -1;  ///< image the ray leaves, excluded by identity
-  Vec3 source_normal{};           ///< of the polygon the ray leaves, or zero
+  Vec3 source_normal{};           ///< of the wall the ray leaves, at its start, or zero
   bool seek_balls = true;
 
   double ball_distance = infinity, ball_depth = 0;
@@ -50,9 +50,10 @@ struct EmbreeTracer::Impl : TracingGeometry {
     std::int32_t number;
   };
 
-  Nearest trace(const Vec3& origin, const Vec3& direction, std::int32_t from, Query& query) const;
+  Nearest trace(const Vec3& origin, const Vec3& direction, std::int32_t from, const Vec3& from_normal,
+                Query& query) const;
   bool has_left(const Vec3& origin, const Vec3& direction) const;
-  Hit trace_periodic(Vec3 origin, const Vec3& direction, std::int32_t from) const;
+  Hit trace_periodic(Vec3 origin, const Vec3& direction, std::int32_t from, const Vec3& from_normal) const;
   void walk(Query& query, double limit) const;
   bool wall_between_centre_and(const Vec3& origin, std::int32_t sphere, Query& query) const;
   bool starts_behind_wall(const Vec3& origin, std::int32_t from, Query& query) const;
@@ -310,13 +311,14 @@ bool EmbreeTracer::Impl::starts_behind_wall(const Vec3& origin, std::int32_t fro
 }
 
 EmbreeTracer::Impl::Nearest EmbreeTracer::Impl::trace(const Vec3& origin, const Vec3& direction,
-                                                      std::int32_t from, Query& query) const {
+                                                      std::int32_t from, const Vec3& from_normal,
+                                                      Query& query) const {
   query.origin = origin;
   query.direction = direction;
   if (from >= 0 && from < spheres)
     query.source_ball = from;
   else if (from >= 0)
-    query.source_normal = polygon_normal_of_wall[static_cast<std::size_t>(from - spheres)];
+    query.source_normal = from_normal;
   const FacetHit exit = cell ? cell->exit(*cell_facets, origin, direction) : FacetHit{infinity, -1};
   if (exit.distance > 0) walk(query, exit.distance);
   return nearest(query, exit, infinity);
@@ -333,7 +335,8 @@ bool EmbreeTracer::Impl::has_left(const Vec3& origin, const Vec3& direction) con
 
 /// Follows the ray from period to period: the origin is kept inside the box, the image of the sphere it left
 /// moves along with it. A ray that meets nothing in `most_periods` is lost.
-Hit EmbreeTracer::Impl::trace_periodic(Vec3 origin, const Vec3& direction, std::int32_t from) const {
+Hit EmbreeTracer::Impl::trace_periodic(Vec3 origin, const Vec3& direction, std::int32_t from,
+                                       const Vec3& from_normal) const {
   constexpr int most_periods = 10000;
   const Vec3 period = box_max - box_min;
   const bool from_sphere = from >= 0 && from < spheres;
@@ -367,7 +370,7 @@ Hit EmbreeTracer::Impl::trace_periodic(Vec3 origin, const Vec3& direction, std::
     if (from_sphere)
       query.source_ball = image_at(from, source);
     else if (from >= 0 && crossing == 0)
-      query.source_normal = polygon_normal_of_wall[static_cast<std::size_t>(from - spheres)];
+      query.source_normal = from_normal;
     walk(query, limit);
     const Nearest found = nearest(query, {infinity, -1}, limit);
     if (found.met != Met::nothing || limit == infinity) {
@@ -389,27 +392,29 @@ EmbreeTracer::EmbreeTracer(const Enclosure& enclosure, int threads)
     : impl_(std::make_unique<Impl>(enclosure, threads)) {}
 EmbreeTracer::~EmbreeTracer() = default;
 
-Hit EmbreeTracer::first_hit(const Vec3& origin, const Vec3& direction, std::int32_t from) const {
+Hit EmbreeTracer::first_hit(const Vec3& origin, const Vec3& direction, std::int32_t from,
+                            const Vec3& from_normal) const {
   const Vec3 start = impl_->to_units(origin);
-  if (impl_->is_periodic()) return impl_->trace_periodic(start, direction, from);
+  if (impl_->is_periodic()) return impl_->trace_periodic(start, direction, from, from_normal);
   Query behind;
   if (impl_->starts_behind_wall(start, from, behind))
     return impl_->hit_on_facet(*impl_->loose_facets, behind.facet, start, 0);
   Query query;
-  return impl_->hit(impl_->trace(start, direction, from, query), query);
+  return impl_->hit(impl_->trace(start, direction, from, from_normal, query), query);
 }
 
-End EmbreeTracer::first_end(const Vec3& origin, const Vec3& direction, std::int32_t from) const {
+End EmbreeTracer::first_end(const Vec3& origin, const Vec3& direction, std::int32_t from,
+                            const Vec3& from_normal) const {
   const Vec3 start = impl_->to_units(origin);
   if (impl_->is_periodic()) {
-    const Hit hit = impl_->trace_periodic(start, direction, from);
+    const Hit hit = impl_->trace_periodic(start, direction, from, from_normal);
     return {hit.surface, hit.distance_m};
   }
   Query behind;
   if (impl_->starts_behind_wall(start, from, behind))
     return {impl_->spheres + impl_->loose_facets->wall(behind.facet), 0};
   Query query;
-  return impl_->end(impl_->trace(start, direction, from, query));
+  return impl_->end(impl_->trace(start, direction, from, from_normal, query));
 }
 
 }  // namespace granrad

@@ -33,8 +33,12 @@ class EmbreeTracer {
   /// Follows a ray from `origin` (on surface `from`, or anywhere with from = -1) along unit `direction`.
   /// A convex surface never hits itself, by identity; a ray that starts inside another sphere hits it at
   /// distance zero; a ray that meets the back of a wall is leaked. Thread-safe.
-  Hit first_hit(const Vec3& origin, const Vec3& direction, std::int32_t from) const;
-  End first_end(const Vec3& origin, const Vec3& direction, std::int32_t from) const;
+  /// `from_normal`: of wall `from` at the origin; without it a ray from a wall that is a plate of two sides
+  /// meets the back of its own plate.
+  Hit first_hit(const Vec3& origin, const Vec3& direction, std::int32_t from,
+                const Vec3& from_normal = {}) const;
+  End first_end(const Vec3& origin, const Vec3& direction, std::int32_t from,
+                const Vec3& from_normal = {}) const;
 
  private:
   struct Impl;

@@ -8,6 +8,7 @@
 
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
+#include "dem/bed/wall_shape.h"
 
 namespace granrad {
 
@@ -104,13 +105,13 @@ void TracingGeometry::add_facets(const Enclosure& enclosure) {
   cell_facets.emplace(tolerance);
   loose_facets.emplace(tolerance);
   for (std::size_t w = 0; w < enclosure.walls.size(); ++w) {
-    const bool polygon = enclosure.walls[w].is_polygon();
-    if (polygon) cell_facets->add(enclosure.walls[w], static_cast<std::int32_t>(w), centre_m, 1 / unit_m);
-    polygon_normal_of_wall.push_back(polygon ? polygon_normal(enclosure.walls[w]) : Vec3{});
+    const bool planar = plane_of(enclosure.walls[w]).has_value();
+    if (planar) cell_facets->add(enclosure.walls[w], static_cast<std::int32_t>(w), centre_m, 1 / unit_m);
+    is_planar.push_back(planar);
   }
   if (!periodic[0] && !periodic[1] && !periodic[2]) cell = ConvexCell::from(*cell_facets);
   for (std::size_t w = 0; w < enclosure.walls.size(); ++w)
-    if (!cell || !enclosure.walls[w].is_polygon())
+    if (!cell || !is_planar[w])
       loose_facets->add(enclosure.walls[w], static_cast<std::int32_t>(w), centre_m, 1 / unit_m);
 }
 

@@ -17,8 +17,8 @@ struct Ball {
 
 /// An enclosure as rays meet it: moved to its centre and divided by the mean radius, so that single precision
 /// resolves it wherever it lies; with the periodic images that reach into the box; walls as facets. Throws
-/// InputError for numbers that are not finite, radii that are not positive or not below half a period, walls
-/// that are not polygons.
+/// InputError for numbers that are not finite, radii that are not positive or not below half a period, faces
+/// that are bent or not convex.
 struct TracingGeometry {
   explicit TracingGeometry(const Enclosure& enclosure);
 
@@ -26,7 +26,7 @@ struct TracingGeometry {
   Vec3 to_metres(const Vec3& p) const { return p * unit_m + centre_m; }
   /// The image of a sphere whose centre is here, or -1.
   std::int32_t image_at(std::int32_t sphere, const Vec3& centre) const;
-  /// The polygon that hides `origin` from the centre of its sphere, or -1.
+  /// The face that hides `origin` from the centre of its sphere, or -1.
   std::int32_t polygon_before(const Vec3& centre, const Vec3& origin) const;
 
   Vec3 centre_m;      ///< origin of the tracing coordinates
@@ -42,8 +42,8 @@ struct TracingGeometry {
   std::vector<std::int32_t> first_image;  ///< [spheres + 1], images of a sphere beyond itself; periodic only
 
   std::optional<Facets> cell_facets, loose_facets;
-  std::optional<ConvexCell> cell;            ///< of cell_facets: nothing leaks, and no tree is needed
-  std::vector<Vec3> polygon_normal_of_wall;  ///< zero for meshes
+  std::optional<ConvexCell> cell;  ///< of cell_facets: nothing leaks, and no tree is needed
+  std::vector<char> is_planar;     ///< by wall
 
  private:
   void choose_units(const Enclosure& enclosure);

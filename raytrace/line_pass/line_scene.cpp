@@ -10,6 +10,7 @@
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
 #include "dem/base/morton.h"
+#include "dem/bed/wall_shape.h"
 #include "raytrace/embree/embree_tracer.h"
 #include "raytrace/facets.h"
 
@@ -46,11 +47,12 @@ std::vector<std::string> shape_problems(const Enclosure& e) {
       problems.push_back(
           fmt::format("lines: period in {} = {} (must be positive)", "xyz"[k], e.box.size()[k]));
   for (const Wall& wall : e.walls)
-    if (!wall.is_polygon())
-      problems.push_back(advised(fmt::format("lines: wall {} = mesh (lines need convex polygons)", wall.name),
-                                 "try embree"));
-    else if (wall.vertices.size() < 3 || !std::all_of(wall.vertices.begin(), wall.vertices.end(), is_finite))
+    if (wall.vertices.size() < 3 || !std::all_of(wall.vertices.begin(), wall.vertices.end(), is_finite))
       problems.push_back(fmt::format("lines: wall {} (needs three finite vertices or more)", wall.name));
+    else if (!plane_of(wall))
+      problems.push_back(
+          advised(fmt::format("lines: wall {} is not in one plane (lines need walls that are)", wall.name),
+                  "try embree"));
   for (std::size_t i = 0; i < e.sphere_count(); ++i)
     if (!is_finite(e.centre_m[i]) || !(e.radius_m[i] > 0) || !std::isfinite(e.radius_m[i])) {
       problems.push_back(fmt::format("lines: particle {} = ({}, {}, {}), radius {} (must be finite)", i,
@@ -131,6 +133,9 @@ bool holds_volume(const Enclosure& e) {
 std::vector<std::string> convexity_problems(const Enclosure& e, const std::vector<LineScene::Face>& faces,
                                             double tolerance) {
   std::vector<std::string> problems;
+  const auto name_of = [&](std::size_t face) {
+    return e.walls[static_cast<std::size_t>(faces[face].surface) - e.sphere_count()].name;
+  };
   for (std::size_t f = 0; f < faces.size(); ++f)
     for (std::size_t g = 0; g < faces.size(); ++g) {
       const auto outside = [&](const Vec3& p) {
@@ -138,9 +143,9 @@ std::vector<std::string> convexity_problems(const Enclosure& e, const std::vecto
       };
       if (std::any_of(faces[g].corners.begin(), faces[g].corners.end(), outside))
         problems.push_back(
-            fmt::format("lines: wall {} stands behind wall {} (the walls must bound a convex space) "
-                        "try embree",
-                        e.walls[g].name, e.walls[f].name));
+            advised(fmt::format("lines: wall {} stands behind wall {} (the walls must bound a convex space)",
+                                name_of(g), name_of(f)),
+                    "try embree"));
     }
   return problems;
 }
@@ -148,10 +153,12 @@ std::vector<std::string> convexity_problems(const Enclosure& e, const std::vecto
 std::vector<LineScene::Face> faces_about(const Enclosure& e, const Vec3& middle, double tolerance) {
   std::vector<LineScene::Face> faces;
   for (std::size_t w = 0; w < e.walls.size(); ++w) {
-    LineScene::Face face{e.walls[w].vertices, polygon_normal(e.walls[w]),
-                         static_cast<std::int32_t>(e.sphere_count() + w)};
-    for (Vec3& p : face.corners) p -= middle;
-    faces.push_back(std::move(face));
+    const auto surface = static_cast<std::int32_t>(e.sphere_count() + w);
+    for (const WallFace& part : faces_of(e.walls[w])) {
+      LineScene::Face face{part.vertices, part.normal, surface};
+      for (Vec3& p : face.corners) p -= middle;
+      faces.push_back(std::move(face));
+    }
   }
   weld(faces, tolerance);
   return faces;

@@ -6,17 +6,19 @@
 #include <cmath>
 
 #include "dem/base/error.h"
+#include "dem/bed/wall_shape.h"
 
 namespace granrad {
 
 WallPatches::WallPatches(const std::vector<Wall>& walls, double longest_m) {
   for (std::size_t w = 0; w < walls.size(); ++w) {
     const Wall& wall = walls[w];
-    if (!wall.is_polygon())
-      throw InputError(advised(fmt::format("wall {} (a mesh has no patches)", wall.name),
+    const auto plane = plane_of(wall);
+    if (!plane)
+      throw InputError(advised(fmt::format("wall {} is not in one plane (it has no patches)", wall.name),
                                "use order = 0, or source = \"paths\""));
     const Vec3& corner = wall.vertices[0];
-    const Vec3 u = normalized(wall.vertices[1] - corner), v = cross(polygon_normal(wall), u);
+    const Vec3 u = normalized(wall.vertices[1] - corner), v = cross(plane->normal, u);
     double low[2] = {0, 0}, high[2] = {0, 0};
     for (const Vec3& p : wall.vertices) {
       const double at[2] = {dot(p - corner, u), dot(p - corner, v)};

@@ -10,7 +10,7 @@ namespace granrad {
 /// are numbered from 0 on, wall by wall, row by row; those outside a wall that is no rectangle see no line.
 class WallPatches {
  public:
-  /// Throws InputError for a wall that is a mesh.
+  /// Throws InputError for a wall that is not in one plane.
   WallPatches(const std::vector<Wall>& walls, double longest_m);
 
   std::int32_t count() const { return static_cast<std::int32_t>(wall_.size()); }

@@ -59,7 +59,7 @@ class Walker {
     std::int32_t from = start;
     double weight = 1;
     for (std::uint64_t event = 0; event < (1ull << event_bits); ++event) {
-      const Hit hit = tracer_.first_hit(ray.origin_m, ray.direction, from);
+      const Hit hit = tracer_.first_hit(ray.origin_m, ray.direction, from, ray.normal);
       ++tally.segments;
       from = hit.surface;
       if (from < 0) break;
@@ -78,7 +78,7 @@ class Walker {
       } else if (uniform(2) < absorbed) {
         return exchange(start, from, weight, tally);
       }
-      ray = {hit.position_m, cosine_direction(hit.normal, uniform(0), uniform(1))};
+      ray = {hit.position_m, cosine_direction(hit.normal, uniform(0), uniform(1)), hit.normal};
     }
     ++tally.lost;
   }

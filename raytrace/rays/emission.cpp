@@ -9,19 +9,6 @@ namespace granrad {
 
 namespace {
 
-/// The triangle a wall's sampling table speaks of: of the mesh, or of the fan around vertex 0 of a polygon.
-std::array<Vec3, 3> triangle_of(const Wall& wall, std::size_t k) {
-  if (wall.is_polygon()) return {wall.vertices[0], wall.vertices[k + 1], wall.vertices[k + 2]};
-  const auto& t = wall.triangles[k];
-  return {wall.vertices[t[0]], wall.vertices[t[1]], wall.vertices[t[2]]};
-}
-
-bool is_parallelogram(const Wall& wall) {
-  if (!wall.is_polygon() || wall.vertices.size() != 4) return false;
-  const auto& v = wall.vertices;
-  return norm(v[0] - v[1] + v[2] - v[3]) <= 1e-12 * norm(v[2] - v[0]);
-}
-
 struct Turn {
   double cosine, sine;
 };
@@ -67,16 +54,17 @@ Vec3 cosine_direction(const Vec3& n, double u, double v) {
 
 Emitter::Emitter(const Enclosure& enclosure) : enclosure_(enclosure) {
   for (const Wall& wall : enclosure.walls) {
-    const std::size_t triangles = wall.is_polygon() ? wall.vertices.size() - 2 : wall.triangles.size();
-    std::vector<double> cumulative;
-    double sum = 0;
-    if (!is_parallelogram(wall)) {
-      for (std::size_t k = 0; k < triangles; ++k) {
-        const auto [a, b, c] = triangle_of(wall, k);
-        cumulative.push_back(sum += 0.5 * norm(cross(b - a, c - a)));
-      }
+    Source source;
+    if (const auto figure = parallelogram_of(wall)) {
+      source.figure = *figure;
+      source.normal = polygon_normal(wall.vertices);
+    } else {
+      source.triangles = triangles_of(wall);
+      double sum = 0;
+      for (const auto& [a, b, c] : source.triangles)
+        source.cumulative_area_m2.push_back(sum += 0.5 * norm(cross(b - a, c - a)));
     }
-    cumulative_area_.push_back(std::move(cumulative));
+    sources_.push_back(std::move(source));
   }
 }
 
@@ -85,13 +73,14 @@ Emission Emitter::emit(std::int32_t surface, double u0, double u1, double u2, do
   if (surface < spheres) {
     const Vec3 normal = direction_on_sphere(u0, u1);
     return {enclosure_.centre_m[surface] + enclosure_.radius_m[surface] * normal,
-            cosine_direction(normal, u2, u3)};
+            cosine_direction(normal, u2, u3), normal};
   }
-  const Wall& wall = enclosure_.walls[surface - spheres];
-  const auto& cumulative = cumulative_area_[surface - spheres];
+  const Source& source = sources_[surface - spheres];
+  const auto& cumulative = source.cumulative_area_m2;
   if (cumulative.empty()) {  // a parallelogram: both uniforms stay stratified over its sides
-    const auto& v = wall.vertices;
-    return {v[0] + u0 * (v[1] - v[0]) + u1 * (v[3] - v[0]), cosine_direction(polygon_normal(wall), u2, u3)};
+    const Parallelogram& f = source.figure;
+    return {f.corner + u0 * f.side[0] + u1 * f.side[1], cosine_direction(source.normal, u2, u3),
+            source.normal};
   }
   const double target = u0 * cumulative.back();
   const std::size_t k = std::min<std::size_t>(
@@ -99,10 +88,11 @@ Emission Emitter::emit(std::int32_t surface, double u0, double u1, double u2, do
       cumulative.size() - 1);
   const double before = k == 0 ? 0 : cumulative[k - 1];
   const double within = std::clamp((target - before) / (cumulative[k] - before), 0.0, 1.0);
-  const auto [a, b, c] = triangle_of(wall, k);
+  const auto& [a, b, c] = source.triangles[k];
   const double root = std::sqrt(within);
   const Vec3 origin = a * (1 - root) + b * (root * (1 - u1)) + c * (root * u1);
-  return {origin, cosine_direction(normalized(cross(b - a, c - a)), u2, u3)};
+  const Vec3 normal = normalized(cross(b - a, c - a));
+  return {origin, cosine_direction(normal, u2, u3), normal};
 }
 
 }  // namespace granrad

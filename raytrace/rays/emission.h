@@ -1,20 +1,21 @@
 #pragma once
 #include <cstdint>
 
+#include "dem/bed/wall_shape.h"
 #include "raytrace/enclosure.h"
 
 namespace granrad {
 
-/// A point on a surface and a direction into the void.
+/// A point on a surface, a direction into the void, and the unit normal there.
 struct Emission {
-  Vec3 origin_m, direction;
+  Vec3 origin_m, direction, normal;
 };
 
 /// Cosine-distributed direction about `normal` from two uniforms in [0, 1): sin^2(theta) = u.
 Vec3 cosine_direction(const Vec3& normal, double u, double v);
 
 /// Diffuse emission from every point of a surface alike: four uniforms -> point uniform in area (sphere,
-/// convex polygon or mesh, on its normal side) and cosine direction. Precondition: not the open surface.
+/// wall, on the normal side of its faces) and cosine direction. Precondition: not the open surface.
 class Emitter {
  public:
   explicit Emitter(const Enclosure& enclosure);  ///< keeps a reference
@@ -22,7 +23,13 @@ class Emitter {
 
  private:
   const Enclosure& enclosure_;
-  std::vector<std::vector<double>> cumulative_area_;  ///< per wall, over its triangles (a fan for polygons)
+  struct Source {  ///< a wall as it is sampled
+    Parallelogram figure;
+    Vec3 normal;  ///< of the figure
+    std::vector<std::array<Vec3, 3>> triangles;
+    std::vector<double> cumulative_area_m2;  ///< over the triangles; empty: the wall is the figure
+  };
+  std::vector<Source> sources_;
 };
 
 }  // namespace granrad

@@ -48,7 +48,7 @@ class Bundle {
       const auto uniform = [&](int n) { return (bits[static_cast<std::size_t>(n)] + 0.5) * 0x1.0p-32; };
       if (uniform(0) < absorptance) return hit.surface;
       hit = tracer_.first_hit(hit.position_m, cosine_direction(hit.normal, uniform(1), uniform(2)),
-                              hit.surface);
+                              hit.surface, hit.normal);
     }
     return hit.surface == open ? open : -1;
   }
@@ -70,7 +70,7 @@ HitCounts trace_total_exchange(const Enclosure& enclosure, const std::vector<dou
     throw InputError("emissivity: zero everywhere (nothing emits; give a surface a positive one)");
   const EmbreeTracer tracer(enclosure, options.threads);
   const auto follow = [&](const EmittedRay& ray) {
-    const Hit hit = tracer.first_hit(ray.start.origin_m, ray.start.direction, ray.surface);
+    const Hit hit = tracer.first_hit(ray.start.origin_m, ray.start.direction, ray.surface, ray.start.normal);
     return RayEnd{Bundle(tracer, emissivity, options.seed, ray).absorbed_by(hit), hit.distance_m};
   };
   return trace_to_target(enclosure, emitting_area, options, follow, report);

@@ -10,6 +10,7 @@
 #include "dem/base/error.h"
 #include "dem/base/hdf5_file.h"
 #include "dem/base/program.h"
+#include "dem/bed/wall_columns.h"
 
 namespace granrad {
 
@@ -98,27 +99,17 @@ void write_snapshot(Hdf5Writer& out, const ViewFactorFile& content) {
   write_points(out, "/snapshot/centre", e.centre_m);
   write_some(out, "/snapshot/radius", e.radius_m);
   write_some(out, "/snapshot/particle", e.particle);
-  std::vector<Vec3> vertex;
-  std::vector<std::int64_t> vertex_begin{0}, triangle_begin{0};
-  std::vector<std::int32_t> triangle;
+  const WallColumns walls = columns_of(e.walls);
+  write_points(out, "/snapshot/wall_vertex", walls.vertices_m);
+  out.write("/snapshot/wall_vertex_begin", walls.vertex_begin);
+  if (!walls.triangles.empty())
+    out.write("/snapshot/wall_triangle", walls.triangles.data(), walls.triangles.size() / 3, 3);
+  out.write("/snapshot/wall_triangle_begin", walls.triangle_begin);
   std::vector<std::string> role;
-  std::vector<double> temperature, emissivity;
-  for (const Wall& wall : e.walls) {
-    vertex.insert(vertex.end(), wall.vertices.begin(), wall.vertices.end());
-    for (const auto& t : wall.triangles) triangle.insert(triangle.end(), t.begin(), t.end());
-    vertex_begin.push_back(static_cast<std::int64_t>(vertex.size()));
-    triangle_begin.push_back(static_cast<std::int64_t>(triangle.size() / 3));
-    role.emplace_back(to_string(wall.role));
-    temperature.push_back(wall.temperature_K);
-    emissivity.push_back(wall.emissivity);
-  }
-  write_points(out, "/snapshot/wall_vertex", vertex);
-  out.write("/snapshot/wall_vertex_begin", vertex_begin);
-  if (!triangle.empty()) out.write("/snapshot/wall_triangle", triangle.data(), triangle.size() / 3, 3);
-  out.write("/snapshot/wall_triangle_begin", triangle_begin);
+  for (const Wall& wall : e.walls) role.emplace_back(to_string(wall.role));
   if (!role.empty()) out.write("/snapshot/wall_role", role);
-  write_some(out, "/snapshot/wall_temperature", temperature);
-  write_some(out, "/snapshot/wall_emissivity", emissivity);
+  write_some(out, "/snapshot/wall_temperature", walls.temperature_K);
+  write_some(out, "/snapshot/wall_emissivity", walls.emissivity);
   write_points(out, "/snapshot/box", {e.box.min, e.box.max});
   for (int axis = 0; axis < 3; ++axis)
     out.attribute("/snapshot", periodic_name[axis], std::vector<std::int64_t>{e.periodic[axis]});
@@ -190,47 +181,30 @@ void refuse_unsound(const SparsePattern& pattern, std::size_t surfaces, const ch
     }
 }
 
-WallRole role_of(const std::string& text) {
+std::int32_t role_number(const std::string& text) {
   for (const auto role : {WallRole::isothermal, WallRole::adiabatic, WallRole::open, WallRole::excluded})
-    if (text == to_string(role)) return role;
+    if (text == to_string(role)) return static_cast<std::int32_t>(role);
   throw IoError(advised(fmt::format("wall_role = '{}' (not a role)", text), "trace the snapshot again"));
 }
 
-void read_walls(const Hdf5Reader& in, Enclosure& e, const std::vector<std::string>& names) {
-  const auto vertex = read_points(in, "/snapshot/wall_vertex");
-  const auto vertex_begin = in.read<std::int64_t>("/snapshot/wall_vertex_begin");
-  const auto triangle = read_some<std::int32_t>(in, "/snapshot/wall_triangle", 3);
-  const auto triangle_begin = in.read<std::int64_t>("/snapshot/wall_triangle_begin");
-  if (vertex_begin.size() < 2) return;
-  const std::size_t walls = vertex_begin.size() - 1;
-  const auto role = in.read_texts("/snapshot/wall_role");
-  const auto temperature = in.read<double>("/snapshot/wall_temperature");
-  const auto emissivity = in.read<double>("/snapshot/wall_emissivity");
-  sound(are_parts(vertex_begin, walls, vertex.size()) &&
-            are_parts(triangle_begin, walls, triangle.size() / 3) && role.size() == walls &&
-            temperature.size() == walls && emissivity.size() == walls && all_finite(temperature, 0) &&
-            all_finite(emissivity, 0),
-        "/snapshot (walls)");
-  for (std::size_t w = 0; w < walls; ++w) {
-    Wall wall;
-    wall.name = names.at(e.sphere_count() + w);
-    wall.vertices.assign(vertex.begin() + vertex_begin[w], vertex.begin() + vertex_begin[w + 1]);
-    for (auto t = static_cast<std::size_t>(triangle_begin[w]);
-         t < static_cast<std::size_t>(triangle_begin[w + 1]); ++t)
-      wall.triangles.push_back({triangle[3 * t], triangle[3 * t + 1], triangle[3 * t + 2]});
-    for (const auto& t : wall.triangles)
-      for (const std::int32_t corner : t)
-        sound(corner >= 0 && corner < static_cast<std::int64_t>(wall.vertices.size()),
-              "/snapshot/wall_triangle");
-    sound(wall.vertices.size() >= 3 && std::all_of(wall.vertices.begin(), wall.vertices.end(),
-                                                   [](const Vec3& v) { return is_finite(v); }),
-          "/snapshot/wall_vertex");
-    wall.role = role_of(role.at(w));
-    wall.temperature_K = temperature.at(w);
-    wall.emissivity = emissivity.at(w);
-    e.walls.push_back(std::move(wall));
-    e.wall.push_back(static_cast<std::int32_t>(w));
+void read_walls(const Hdf5Reader& in, Enclosure& e, const std::vector<std::string>& surface_names) {
+  WallColumns c;
+  c.vertex_begin = in.read<std::int64_t>("/snapshot/wall_vertex_begin");
+  if (c.vertex_begin.size() < 2) return;
+  c.vertices_m = read_points(in, "/snapshot/wall_vertex");
+  c.triangles = read_some<std::int32_t>(in, "/snapshot/wall_triangle", 3);
+  c.triangle_begin = in.read<std::int64_t>("/snapshot/wall_triangle_begin");
+  for (const auto& role : in.read_texts("/snapshot/wall_role")) c.role.push_back(role_number(role));
+  c.temperature_K = in.read<double>("/snapshot/wall_temperature");
+  c.emissivity = in.read<double>("/snapshot/wall_emissivity");
+  for (std::size_t w = 0; w + 1 < c.vertex_begin.size(); ++w)
+    c.name.push_back(surface_names.at(e.sphere_count() + w));
+  try {
+    e.walls = walls_from(c);
+  } catch (const InputError& error) {
+    throw IoError(fmt::format("/snapshot: {} is inconsistent (the file is damaged)", error.what()));
   }
+  for (std::size_t w = 0; w < e.walls.size(); ++w) e.wall.push_back(static_cast<std::int32_t>(w));
 }
 
 Enclosure read_enclosure(const Hdf5Reader& in) {

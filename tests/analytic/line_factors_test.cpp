@@ -120,7 +120,7 @@ TEST(LineFactors, SphereAndWalls) {
     const std::vector<std::size_t> seen{0, 1, 2, 3, 5};
     const auto f = measured_factors(e, 0, {1, 2, 3, 4, 6}, 20);
     for (std::size_t k = 0; k < seen.size(); ++k) {
-      const double exact = exact_sphere_polygon(centre, e.walls[seen[k]]);
+      const double exact = exact_sphere_wall(centre, e.walls[seen[k]]);
       EXPECT_LT(std::abs(f[k].sigmas_off(exact)), student_limit) << e.walls[seen[k]].name << " at " << offset;
     }
   }

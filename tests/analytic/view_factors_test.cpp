@@ -87,7 +87,7 @@ HitCounts trace_sphere(const Enclosure& e) {
   std::vector<std::int64_t> count(e.surface_count(), 0);
   count[0] = 1000000;
   return trace_rows(e, surface_areas(e), count, rays(0, Sampling::plain), [&](const EmittedRay& ray) {
-    const Hit hit = tracer.first_hit(ray.start.origin_m, ray.start.direction, ray.surface);
+    const Hit hit = tracer.first_hit(ray.start.origin_m, ray.start.direction, ray.surface, ray.start.normal);
     return RayEnd{hit.surface, hit.distance_m};
   });
 }
@@ -105,7 +105,7 @@ TEST(SphereInBox, EqualsSolidAngles) {
     const Enclosure e = boxed(spheres_in_open_space({centre}, {r}), channel());
     const HitCounts counts = trace_sphere(e);
     for (std::size_t w = 0; w < 6; ++w) {
-      EXPECT_NEAR(exact_sphere_polygon(centre, e.walls[w]), f[w], 1e-12);
+      EXPECT_NEAR(exact_sphere_wall(centre, e.walls[w]), f[w], 1e-12);
       EXPECT_LT(std::abs(sigmas_off(counts, 0, 1 + w, f[w])), 4) << line << " wall " << w;
     }
     EXPECT_EQ(counts.leaked, 0);

@@ -43,7 +43,7 @@ fs::path last_frame(const fs::path& run) {
 Bed with_meshes(Bed bed) {
   std::erase_if(bed.walls, [&](const Wall& w) { return !w.contact || w.opens_at_s <= bed.time_s; });
   for (Wall& wall : bed.walls) {
-    if (!wall.is_polygon()) continue;
+    if (!wall.triangles.empty()) continue;
     for (std::int32_t k = 2; k < std::int32_t(wall.vertices.size()); ++k)
       wall.triangles.push_back({0, k - 1, k});
   }

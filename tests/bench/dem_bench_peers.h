@@ -104,7 +104,7 @@ inline std::optional<double> run_liggghts(const std::filesystem::path& folder, c
     std::string meshes;
     int count = 0;
     for (const auto& w : bed.walls) {
-      if (w.is_polygon()) continue;
+      if (w.triangles.empty()) continue;
       write_stl(folder / (w.name + ".stl"), w);
       deck.print("fix {0} all mesh/surface file {0}.stl type 1\n", w.name);
       meshes += " " + w.name, ++count;

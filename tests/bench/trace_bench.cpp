@@ -615,7 +615,7 @@ void per_ray(Book& book, const Case& c) {
       bare_end[k] = bare.hit(static_cast<std::size_t>(from[k]), starts[k]);
     const double middle = cpu_seconds();
     for (std::size_t k = 0; k < starts.size(); ++k)
-      our_end[k] = ours.first_end(starts[k].origin_m, starts[k].direction, from[k]).surface;
+      our_end[k] = ours.first_end(starts[k].origin_m, starts[k].direction, from[k], starts[k].normal).surface;
     const double end = cpu_seconds();
     bare_s = std::min(bare_s, middle - start), our_s = std::min(our_s, end - middle);
     const Result whole = embree_sobol(c, static_cast<double>(rays), 1);

@@ -31,7 +31,7 @@ TraceOptions rays(double n, Sampling sampling = Sampling::plain, std::uint64_t s
 HitCounts trace_only(const Enclosure& e, const std::vector<std::int64_t>& count) {
   const EmbreeTracer tracer(e);
   return trace_rows(e, surface_areas(e), count, rays(0), [&](const EmittedRay& ray) {
-    const Hit hit = tracer.first_hit(ray.start.origin_m, ray.start.direction, ray.surface);
+    const Hit hit = tracer.first_hit(ray.start.origin_m, ray.start.direction, ray.surface, ray.start.normal);
     return RayEnd{hit.surface, hit.distance_m};
   });
 }
@@ -154,7 +154,7 @@ TEST(NanometreGap, SeesItsWallLikeItsSolidAngle) {
   for (const double gap : {1e-9, 0.0, -1e-9}) {
     const Enclosure e = boxed(spheres_in_open_space({{0.005, r + gap, 0.025}}, {r}), channel());
     const HitCounts counts = trace_first_sphere(e, 1000000);
-    const double exact = exact_sphere_polygon(e.centre_m[0], e.walls[2]);
+    const double exact = exact_sphere_wall(e.centre_m[0], e.walls[2]);
     std::printf("gap %.0e m: F %.5f exact %.5f z %.2f\n", gap, factor(counts, 0, 3), exact,
                 sigmas_off(counts, 0, 3, exact));
     EXPECT_LT(std::abs(sigmas_off(counts, 0, 3, exact)), 4);
@@ -172,7 +172,7 @@ TEST(WallOverlap, CutSphereEmitsIntoTheWall) {
     const double f = factor(counts, 0, 3);
     // On an infinite plane: all of the cap's share c, and of the rest (1 - c) / 2 on average: 1/2 + c^2 / 2,
     // c = 0.05.
-    const double whole = exact_sphere_polygon(e.centre_m[0], e.walls[2]);
+    const double whole = exact_sphere_wall(e.centre_m[0], e.walls[2]);
     EXPECT_NEAR(f, whole + 0.05 * 0.05 / 2, 4 * std::sqrt(0.25 / 4e5));
     EXPECT_EQ(std::accumulate(counts.hits.begin(), counts.hits.end(), std::int64_t{0}), counts.launched[0]);
   }

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "dem/base/constants.h"
+#include "dem/bed/wall_shape.h"
 #include "raytrace/embree/embree_tracer.h"
 #include "raytrace/line_pass/line_directions.h"
 #include "raytrace/line_pass/line_pass.h"
@@ -110,7 +111,7 @@ struct Line {
     return along + std::sqrt(std::max(0.0, e.radius_m[i] * e.radius_m[i] - across2));
   }
   double wall_depth(const Enclosure& e, std::size_t wall) const {
-    const Vec3 n = polygon_normal(e.walls[wall]);
+    const Vec3 n = polygon_normal(e.walls[wall].vertices);
     return dot(e.walls[wall].vertices[0] - foot, n) / dot(w, n);
   }
   /// How close to tangent, in radii.

@@ -1,6 +1,7 @@
 // What the tracers see is the bed inside the region, closed by its walls, with the ends moved clear of the
 // spheres.
 #include "raytrace/enclosure.h"
+#include "dem/bed/wall_shape.h"
 
 #include <gtest/gtest.h>
 
@@ -66,7 +67,8 @@ TEST(Enclosure, OpenEndsClearTheSpheresAndTheBoxStaysClosed) {
       EXPECT_LT(norm(e.walls[w].vertices[k] - expected[w].vertices[k]), 1e-15) << w << ' ' << k;
   for (std::size_t s = 0; s < e.sphere_count(); ++s)
     for (const int w : {4, 5})
-      EXPECT_GE(dot(polygon_normal(e.walls[w]), e.centre_m[s] - e.walls[w].vertices[0]), e.radius_m[s]);
+      EXPECT_GE(dot(polygon_normal(e.walls[w].vertices), e.centre_m[s] - e.walls[w].vertices[0]),
+                e.radius_m[s]);
 }
 
 TEST(Enclosure, SlantedNeighboursStretchAlongTheirEdges) {

@@ -10,7 +10,7 @@
 
 #include "dem/base/error.h"
 #include "dem/base/random.h"
-#include "dem/bed/wall_distance.h"
+#include "dem/bed/wall_shape.h"
 
 namespace granrad {
 namespace {
