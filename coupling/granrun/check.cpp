@@ -192,6 +192,7 @@ int check_case(const Case& c, const RunOptions& options, bool defaults) {
   fmt::print("left out\n");
   for (const auto& text : verdict.left_out) fmt::print("  {}\n", text);
   print_limits(simulation);
+  for (const auto& note : simulation.notes()) fmt::print("  note: {}\n", note);
   if (const auto note = end_note(simulation.plan(), c.flow.end_time_s); !note.empty())
     fmt::print("  note: {}\n", note);
   for (const auto& note : case_notes(c, simulation.bed())) fmt::print("  note: {}\n", note);

@@ -26,15 +26,21 @@ bool inside_across(const Box& region, const Vec3& p, int axis) {
   return true;
 }
 
-void add_particle(std::vector<Sums>& sums, const Bed& bed, std::size_t i, const Box& region, int axis) {
+/// `at`: the centre inside the box. Slices that fill a period take in the caps of its images.
+void add_particle(std::vector<Sums>& sums, const Bed& bed, std::size_t i, const Vec3& at, const Box& region,
+                  int axis) {
   const double thickness = region.size()[axis] / static_cast<double>(sums.size());
-  const double x = bed.position_m[i][axis] - region.min[axis], r = bed.radius_m[i];
-  const auto last = static_cast<long>(sums.size()) - 1;
-  const long first = std::max(0L, static_cast<long>(std::floor((x - r) / thickness)));
-  const long end = std::min(last, static_cast<long>(std::floor((x + r) / thickness)));
+  const double x = at[axis] - region.min[axis], r = bed.radius_m[i];
+  const auto count = static_cast<long>(sums.size()), last = count - 1;
+  const bool wraps = bed.periodic[axis] && region.size()[axis] > (1 - 1e-9) * bed.box.size()[axis] &&
+                     2 * r < thickness * count;
+  const long low_slice = static_cast<long>(std::floor((x - r) / thickness)),
+             high_slice = static_cast<long>(std::floor((x + r) / thickness));
+  const long first = wraps ? low_slice : std::max(0L, low_slice),
+             end = wraps ? high_slice : std::min(last, high_slice);
   for (long k = first; k <= end; ++k) {
     const double low = static_cast<double>(k) * thickness;
-    sums[k].volume += r * r * r * (cap((low + thickness - x) / r) - cap((low - x) / r));
+    sums[(k + count) % count].volume += r * r * r * (cap((low + thickness - x) / r) - cap((low - x) / r));
   }
   const long home = static_cast<long>(std::floor(x / thickness));
   if (home < 0 || home > last) return;
@@ -49,8 +55,10 @@ void add_particle(std::vector<Sums>& sums, const Bed& bed, std::size_t i, const 
 Profile profile(const std::vector<Bed>& beds, const Box& region, int axis, int slices) {
   std::vector<Sums> sums(slices);
   for (const Bed& bed : beds)
-    for (std::size_t i = 0; i < bed.size(); ++i)
-      if (inside_across(region, bed.position_m[i], axis)) add_particle(sums, bed, i, region, axis);
+    for (std::size_t i = 0; i < bed.size(); ++i) {
+      const Vec3 at = wrapped_into_box(bed, bed.position_m[i]);
+      if (inside_across(region, at, axis)) add_particle(sums, bed, i, at, region, axis);
+    }
   const double volume = region.volume() / slices * static_cast<double>(std::max<std::size_t>(beds.size(), 1));
   Profile result;
   for (int k = 0; k < slices; ++k) {

@@ -58,6 +58,7 @@ void begin(Simulation& simulation, const Case& c, const std::filesystem::path& w
   } else {
     simulation.start();
     for (const auto& note : case_notes(c, simulation.bed())) say(options, "note: " + note);
+    for (const auto& note : simulation.notes()) say(options, "note: " + note);
     const double every_s = c.heat.radiation.every_s, motion_s = simulation.limits().motion_s;
     if (c.heat.radiation.kind != RadiationKind::none && every_s > motion_s)
       say(options, fmt::format("note: particles move more than their diameter between radiation updates "

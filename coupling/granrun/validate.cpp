@@ -115,10 +115,10 @@ std::vector<RadiationSettings> usable_sources(const Case& c, const Bed& bed) {
   Scene frozen = c.flow;
   frozen.engine = EngineKind::none;
   std::vector<RadiationSettings> usable = {choose_reference(c)};
-  check_radiation(usable.front(), frozen, bed);
+  check_radiation(usable.front(), frozen, bed, c.heat.surroundings_K);
   for (const auto& settings : choose_compared(c)) {
     try {
-      check_radiation(settings, frozen, bed);
+      check_radiation(settings, frozen, bed, c.heat.surroundings_K);
       usable.push_back(settings);
     } catch (const InputError& error) {
       if (!c.heat.validate.compared.empty()) throw;

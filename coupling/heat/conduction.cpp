@@ -117,12 +117,12 @@ Conductances conductances(const Bed& bed, const NearPairs& pairs, const Conducti
 
   result.walls.resize(pairs.walls.size());
   for (std::size_t k = 0; k < pairs.walls.size(); ++k) {
-    const auto [i, wall, distance] = pairs.walls[k];
+    const auto [i, wall, distance, gas_share] = pairs.walls[k];
     WallConductance& g = result.walls[k] = {i, wall, 0, 0};
     if (!inside(i) || !conducts(bed.walls[wall])) continue;
     const double r = bed.radius_m[i];
     g.solid_W_K = contact(bed.material[i], bed.material[i]) * std::sqrt(wall_contact_area_m2(r, distance));
-    g.gas_W_K = gas_conductance_to_wall(settings.gas, r, distance);
+    g.gas_W_K = gas_share * gas_conductance_to_wall(settings.gas, r, distance);
   }
   drop_empty(result.walls);
   if (touches) add_touches(bed, *touches, contact, inside, result);

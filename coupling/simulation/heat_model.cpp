@@ -21,10 +21,9 @@ double sum(const std::vector<double>& values) {
   return total.value();
 }
 
-double surroundings_K(const Scene& scene) {
-  for (const Wall& wall : scene.walls)
-    if (wall.role == WallRole::open) return wall.temperature_K;
-  return scene.particle_temperature_K;
+/// Where nothing says it, the walls close (check_radiation saw to it) and no ray asks.
+double surroundings_K(const Case& c) {
+  return known_surroundings_K(c.flow, c.heat.surroundings_K).value_or(c.flow.particle_temperature_K);
 }
 
 }  // namespace
@@ -53,8 +52,7 @@ HeatModel::ParticleHeat HeatModel::draw_radiation(const Bed& bed, const std::vec
                                                   std::uint64_t draw) {
   const Enclosure enclosure = make_enclosure(bed, case_.flow.region);
   if (!source_) source_ = make_radiation_source(case_.heat.radiation, case_.flow, threads_);
-  const RadiativeState state =
-      radiative_state(bed, temperature_K, enclosure, surroundings_K(case_.flow));
+  const RadiativeState state = radiative_state(bed, temperature_K, enclosure, surroundings_K(case_));
   ParticleHeat result;
   result.all = source_->net_heat(enclosure, state, draw);
   const auto to_particles = [&](const std::vector<double>& by_surface) {

@@ -68,7 +68,7 @@ class HeatModel {
   RadiationTotals radiation_;
 };
 
-/// 1 for the particles whose centre lies in `region`.
+/// 1 for the particles whose centre lies in `region` (in the periodic image inside the box, as everywhere).
 std::vector<char> in_region(const Bed& bed, const Box& region);
 
 }  // namespace granrad

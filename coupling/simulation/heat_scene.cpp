@@ -255,6 +255,10 @@ HeatScene read_heat_scene(TomlDocument& document, const Scene& scene) {
       read_conduction_interval(root.table({"conduction", "Heat through contacts"}), scene);
   auto radiation = root.table({"radiation", "How radiation is exchanged; absent: no radiation"});
   heat.radiation = read_radiation(radiation, scene, radiation.present() ? "paths" : "none");
+  heat.surroundings_K =
+      root.table({"surroundings", "what rays meet beyond all walls"})
+          .optional_number({"temperature_K", "of the black surroundings; needed where rays leave"},
+                           {.unit = "K", .min = 0, .min_exclusive = true});
   heat.output = read_output(root.table({"output", "What is written when"}), scene);
   heat.validate = read_validate(root.table({"validate", "What granrun validate compares"}), scene);
   read_averaging(root.table({"output", "What is written when"}), scene, heat);

@@ -48,11 +48,12 @@ struct HeatScene {
   bool modulus_exponent_chosen = false;  ///< by the scene, not by default
   int conduction_every_steps = 0;  ///< DEM steps between conduction updates; 0: chosen (see time_plan.h)
   RadiationSettings radiation;
+  std::optional<double> surroundings_K;  ///< [surroundings]: of what rays meet beyond all walls
   OutputSettings output;
   ValidateSettings validate;
 };
 
-/// Reads [gas], [conduction], [radiation], [output], [validate] and checks them against the flow part;
+/// Reads [gas], [conduction], [radiation], [surroundings], [output], [validate] and checks them against the flow part;
 /// problems go to the document.
 HeatScene read_heat_scene(TomlDocument& document, const Scene& scene);
 

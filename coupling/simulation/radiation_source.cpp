@@ -3,20 +3,37 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 #include "coupling/heat/harmonic_source.h"
 #include "coupling/heat/radiosity_source.h"
+#include "dem/base/error.h"
 #include "fit/correlation/correlation.h"
 #include "fit/correlation/correlation_source.h"
 #include "raytrace/lines/black_line_source.h"
 #include "raytrace/lines/line_plan.h"
 #include "raytrace/lines/line_sweep.h"
 #include "raytrace/paths/path_source.h"
+#include "raytrace/rays/enclosure_check.h"
 #include "raytrace/rays/view_factors.h"
 
 namespace granrad {
 
 namespace {
+
+/// Probe rays that leave through closed walls: the rounding of edges.
+constexpr std::int64_t few_open = 2;
+/// Share of the rays that may meet the back of a wall.
+constexpr double most_leaks = 1e-3;
+
+void refuse_leaks(const HitCounts& counts) {
+  const auto rays = std::accumulate(counts.launched.begin(), counts.launched.end(), std::int64_t{0});
+  if (static_cast<double>(counts.leaked) > most_leaks * static_cast<double>(rays))
+    throw NumericalError(advised(
+        fmt::format("radiation: {} of {} rays met the back of a wall", counts.leaked, rays),
+        "turn its normals to the particles (flip = true) or let both sides radiate (two_sided = true)"));
+}
 
 RadiositySource::Estimate embree_estimate(const RadiationSettings& settings, int threads) {
   return [=](const Enclosure& enclosure, std::uint64_t update) {
@@ -24,7 +41,9 @@ RadiositySource::Estimate embree_estimate(const RadiationSettings& settings, int
     options.rays_per_particle = settings.rays;
     options.seed = settings.seed + update;
     options.threads = threads;
-    return one_way_estimate(trace_view_factors(enclosure, options));
+    const HitCounts counts = trace_view_factors(enclosure, options);
+    refuse_leaks(counts);
+    return one_way_estimate(counts);
   };
 }
 
@@ -85,13 +104,56 @@ std::unique_ptr<ExchangeSource> make_radiation_source(const RadiationSettings& s
   return nullptr;
 }
 
-void check_radiation(const RadiationSettings& settings, const Scene& scene, const Bed& bed) {
-  if (settings.kind == RadiationKind::none || bed.size() == 0) return;
+std::optional<double> known_surroundings_K(const Scene& scene, std::optional<double> stated_K) {
+  if (stated_K) return stated_K;
+  std::optional<double> found;
+  for (const Wall& wall : scene.walls) {
+    if (wall.role != WallRole::open) continue;
+    if (found && *found != wall.temperature_K) return {};
+    found = wall.temperature_K;
+  }
+  return found;
+}
+
+namespace {
+
+/// Where rays leave, now or when a shutter has opened.
+std::string opening_problem(const Scene& scene, const Bed& bed, const EnclosureCheck& now) {
+  const auto said = [](const EnclosureCheck& check, const char* when) {
+    return advised(
+        fmt::format("the walls do not close{}: {} of {} probe rays leave, most from {}, and nothing "
+                    "says how warm it is out there",
+                    when, check.open, check.rays, check.leaves_most),
+        "give [surroundings] temperature_K, or close the walls");
+  };
+  if (now.open > few_open) return said(now, "");
+  const bool opens = std::any_of(scene.walls.begin(), scene.walls.end(),
+                                 [](const Wall& wall) { return std::isfinite(wall.opens_at_s); });
+  if (!opens) return "";
+  Bed opened = bed;
+  opened.time_s = infinity;
+  const EnclosureCheck then = check_enclosure(make_enclosure(opened, scene.region), bed.id);
+  return then.open > few_open ? said(then, " once the shutters are open") : "";
+}
+
+}  // namespace
+
+std::vector<std::string> check_radiation(const RadiationSettings& settings, const Scene& scene,
+                                         const Bed& bed, std::optional<double> surroundings_K) {
+  if (settings.kind == RadiationKind::none) return {};
   const Enclosure enclosure = make_enclosure(bed, scene.region);
+  const EnclosureCheck check = check_enclosure(enclosure, bed.id);
+  std::vector<std::string> problems = check.problems;
+  if (!known_surroundings_K(scene, surroundings_K))
+    if (const auto problem = opening_problem(scene, bed, check); !problem.empty())
+      problems.push_back(problem);
+  if (!problems.empty()) throw InputError(problems);
+  if (bed.size() == 0) return check.notes;
   if (settings.kind == RadiationKind::correlation)
     correlation_exchange_areas(read_correlation(settings.table), enclosure, {});
   if (settings.kind == RadiationKind::lines)
     sweep_exchange_areas(enclosure, {.directions = 1, .lines_per_disc = 1, .replicates = 2});
+  return check.notes;
 }
 
 RadiativeState radiative_state(const Bed& bed, const std::vector<double>& temperature_K,

@@ -1,5 +1,8 @@
 #pragma once
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "coupling/simulation/heat_scene.h"
 #include "raytrace/exchange_source.h"
@@ -12,8 +15,14 @@ std::unique_ptr<ExchangeSource> make_radiation_source(const RadiationSettings& s
                                                       int threads);
 
 /// Throws what the source would throw for this bed, at little cost: InputError (solid fraction outside the
-/// table, walls that the source cannot serve, particles outside the walls). A bed without particles passes.
-void check_radiation(const RadiationSettings& settings, const Scene& scene, const Bed& bed);
+/// table, walls that the source cannot serve, and all that enclosure_check.h finds, whatever the source; where
+/// rays leave for surroundings of unknown temperature, that too). Returns notes on what is probably a mistake.
+std::vector<std::string> check_radiation(const RadiationSettings& settings, const Scene& scene,
+                                         const Bed& bed, std::optional<double> surroundings_K);
+
+/// The temperature of what rays meet beyond all walls: [surroundings], else that of the open walls if they
+/// have one; empty where nothing says it.
+std::optional<double> known_surroundings_K(const Scene& scene, std::optional<double> stated_K);
 
 /// State of every surface of an enclosure of `bed` whose particles have the temperatures given (by particle);
 /// the surroundings are black.

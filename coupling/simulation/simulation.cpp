@@ -47,6 +47,17 @@ std::int64_t identity(const Case& c) {
   return static_cast<std::int64_t>(text_hash(c.identity));
 }
 
+/// Particles that take no part in the heat; a plug has some above and below its region by design.
+std::string outside_note(const Scene& scene, const Bed& bed) {
+  const auto inside = in_region(bed, scene.region);
+  const auto outside = std::count(inside.begin(), inside.end(), 0);
+  if (outside == 0 || scene.feed.kind == FeedSettings::Kind::plug) return "";
+  return advised(fmt::format("{} of {} particles lie outside the heat-transfer region: they neither conduct "
+                             "nor radiate",
+                             outside, bed.size()),
+                 "widen [region], or [box]");
+}
+
 }  // namespace
 
 Simulation::Simulation(const Case& c, int threads)
@@ -57,7 +68,10 @@ Simulation::Simulation(const Case& c, int threads)
 void Simulation::start(Bed bed) {
   bed_ = std::move(bed);
   make_plan();
-  check_radiation(case_.heat.radiation, case_.flow, bed_);
+  notes_ = case_.flow.notes;
+  if (const auto note = outside_note(case_.flow, bed_); !note.empty()) notes_.push_back(note);
+  for (auto& note : check_radiation(case_.heat.radiation, case_.flow, bed_, case_.heat.surroundings_K))
+    notes_.push_back(std::move(note));
   heat_.start(bed_);
   recorder_.start(bed_);
 }

@@ -45,6 +45,8 @@ class Simulation {
   HeatModel::ParticleHeat draw_radiation(std::uint64_t draw) { return heat_.draw_radiation(bed_, draw); }
   FeedTotals fed() const { return flow_.totals(); }
   const PartSeconds& seconds() const { return seconds_; }
+  /// What start() found that is probably a mistake, or was done to the walls.
+  const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   /// Chooses the steps for the bed as it is.
@@ -60,6 +62,7 @@ class Simulation {
   TimePlan plan_;
   std::int64_t tick_ = 0;
   PartSeconds seconds_;
+  std::vector<std::string> notes_;
 };
 
 }  // namespace granrad

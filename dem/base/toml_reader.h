@@ -68,7 +68,8 @@ class TomlDocument {
 class TomlTable {
  public:
   bool present() const;
-  std::string path() const;  ///< "radiation", "walls.y_min", "polygon[2]"; "" for the root
+  std::string path() const;   ///< "radiation", "walls.y_min", "polygon[2]"; "" for the root
+  std::int64_t line() const;  ///< where it starts in its file; 0 when absent or given by --set
   bool has(std::string_view key) const;
   std::vector<std::string> keys() const;
 

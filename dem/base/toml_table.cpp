@@ -36,6 +36,10 @@ std::optional<std::string> number_text(double value, const NumberRule& rule, con
 bool TomlTable::present() const {
   return node_->table || node_->exploring(Exploration::tables);
 }
+std::int64_t TomlTable::line() const {
+  return node_->table ? static_cast<std::int64_t>(node_->table->source().begin.line) : 0;
+}
+
 std::string TomlTable::path() const {
   return node_->path;
 }

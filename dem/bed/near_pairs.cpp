@@ -9,7 +9,6 @@
 
 #include "dem/base/error.h"
 #include "dem/bed/cell_grid.h"
-#include "dem/bed/wall_shape.h"
 
 namespace granrad {
 
@@ -118,29 +117,72 @@ std::vector<Vec3> image_shifts(const Bed& bed) {
   return shifts;
 }
 
-std::vector<NearWall> find_walls(const Bed& bed, const std::vector<SizeClass>& classes, double gap) {
-  std::vector<NearWall> found;
-  for (std::size_t w = 0; w < bed.walls.size(); ++w) {
-    const Wall& wall = bed.walls[w];
-    if (!stands(wall, bed.time_s)) continue;
-    for (const WallFace& face : faces_of(wall))
-      for (const Vec3& shift : image_shifts(bed))
-        for (const SizeClass& c : classes) {
-          const double reach = std::max(c.largest_radius_m + gap, 0.0);
-          const Vec3 margin{reach, reach, reach};
-          c.grid.visit_box({face.bounds.min - shift - margin, face.bounds.max - shift + margin},
-                           [&](std::int32_t i, const Vec3& at) {
-                             const double most = bed.radius_m[i] + gap;
-                             if (std::abs(dot(face.normal, at + shift - face.vertices[0])) > most) return;
-                             const double distance = distance_to(face, at + shift);
-                             if (distance <= most)
-                               found.push_back({i, static_cast<std::int32_t>(w), distance});
-                           });
-        }
+/// A facet near an image of a particle.
+struct Meeting {
+  std::int32_t i, shift, facet;
+  bool operator<(const Meeting& other) const {
+    return std::tie(i, shift, facet) < std::tie(other.i, other.shift, other.facet);
   }
-  keep_nearest(found);
+};
+
+std::vector<Meeting> find_meetings(const WallSurface& surface, const Bed& bed,
+                                   const std::vector<SizeClass>& classes, const std::vector<Vec3>& shifts,
+                                   double gap) {
+  std::vector<Meeting> found;
+  for (std::int32_t f = 0; f < surface.facet_count(); ++f) {
+    if (!surface.stands(f)) continue;
+    const Box& bounds = surface.bounds(f);
+    for (std::size_t s = 0; s < shifts.size(); ++s)
+      for (const SizeClass& c : classes) {
+        const double reach = std::max(c.largest_radius_m + gap, 0.0);
+        const Vec3 margin{reach, reach, reach};
+        c.grid.visit_box({bounds.min - shifts[s] - margin, bounds.max - shifts[s] + margin},
+                         [&](std::int32_t i, const Vec3& at) {
+                           const double most = bed.radius_m[i] + gap;
+                           const Vec3 p = at + shifts[s];
+                           if (std::abs(surface.height(f, p)) < most && surface.distance(f, p) < most)
+                             found.push_back({i, static_cast<std::int32_t>(s), f});
+                         });
+      }
+  }
+  std::sort(found.begin(), found.end());
   return found;
 }
+
+/// Distinct touches with the walls that face them.
+class TouchesOfOne {
+ public:
+  TouchesOfOne(const WallSurface& surface, double radius_m, double gap_m)
+      : surface_(surface), radius_m_(radius_m), reach_m_(radius_m + gap_m) {}
+
+  /// Those of the image p, which is the particle moved by `shift`.
+  void add(const Vec3& p, const Vec3& shift, const std::int32_t* begin, const std::int32_t* end) {
+    for (auto touch : surface_.distinct_touches(begin, end, p, reach_m_, radius_m_)) {
+      wall_[{touch.feature, touch.facet}] = surface_.wall_facing(touch, p, begin, end);
+      touch.point -= shift;
+      all_.push_back(touch);
+    }
+    ++images_;
+  }
+
+  void append_to(std::int32_t i, std::vector<NearWall>& out) const {
+    const auto kept = images_ > 1 ? surface_.distinct(all_, radius_m_) : all_;
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      double share = 1;
+      for (std::size_t m = 0; m < k; ++m) share = std::min(share, 1 - dot(kept[k].normal, kept[m].normal));
+      if (share > 0 || kept[k].distance_m < radius_m_)
+        out.push_back(
+            {i, wall_.at({kept[k].feature, kept[k].facet}), kept[k].distance_m, std::max(share, 0.0)});
+    }
+  }
+
+ private:
+  const WallSurface& surface_;
+  double radius_m_, reach_m_;
+  int images_ = 0;
+  std::vector<WallSurface::Touch> all_;
+  std::map<std::pair<std::int64_t, std::int32_t>, std::int32_t> wall_;
+};
 
 }  // namespace
 
@@ -161,23 +203,59 @@ std::vector<NearPair> sorted_by_rows(const std::vector<std::vector<NearPair>>& p
   return sorted;
 }
 
-void keep_nearest(std::vector<NearWall>& walls) {
+void sort_by_rows(std::vector<NearWall>& walls) {
   std::sort(walls.begin(), walls.end(), [](const NearWall& a, const NearWall& b) {
     return std::tie(a.i, a.wall, a.distance_m) < std::tie(b.i, b.wall, b.distance_m);
   });
-  const auto same = [](const NearWall& a, const NearWall& b) { return a.i == b.i && a.wall == b.wall; };
-  walls.erase(std::unique(walls.begin(), walls.end(), same), walls.end());
 }
+
+void append_near_walls(const WallSurface& surface, std::int32_t i, const Vec3& p, double radius_m,
+                       double max_gap_m, const std::int32_t* begin, const std::int32_t* end,
+                       std::vector<NearWall>& out) {
+  TouchesOfOne touches(surface, radius_m, max_gap_m);
+  touches.add(p, {}, begin, end);
+  touches.append_to(i, out);
+}
+
+namespace {
+
+std::vector<NearWall> find_walls(const Bed& bed, const std::vector<Vec3>& points,
+                                 const std::vector<SizeClass>& classes, const WallSurface& surface,
+                                 double gap) {
+  const auto shifts = image_shifts(bed);
+  const auto meetings = find_meetings(surface, bed, classes, shifts, gap);
+  std::vector<NearWall> found;
+  std::vector<std::int32_t> facets;
+  for (std::size_t k = 0; k < meetings.size();) {
+    const auto i = meetings[k].i;
+    TouchesOfOne touches(surface, bed.radius_m[i], gap);
+    while (k < meetings.size() && meetings[k].i == i) {
+      const auto shift = meetings[k].shift;
+      facets.clear();
+      for (; k < meetings.size() && meetings[k].i == i && meetings[k].shift == shift; ++k)
+        facets.push_back(meetings[k].facet);
+      touches.add(points[i] + shifts[shift], shifts[shift], facets.data(), facets.data() + facets.size());
+    }
+    touches.append_to(i, found);
+  }
+  sort_by_rows(found);
+  return found;
+}
+
+}  // namespace
 
 NearPairs near_pairs(const Bed& bed, double max_gap_m) {
   const std::vector<Vec3> points = wrapped_positions(bed);
   const std::vector<SizeClass> classes = size_classes(bed, points, max_gap_m);
-  return {find_particles(bed, points, classes, max_gap_m), find_walls(bed, classes, max_gap_m)};
+  WallSurface surface(bed.walls);
+  surface.set_time(bed.walls, bed.time_s);
+  return {find_particles(bed, points, classes, max_gap_m),
+          find_walls(bed, points, classes, surface, max_gap_m)};
 }
 
-std::vector<NearWall> near_walls(const Bed& bed, double max_gap_m) {
+std::vector<NearWall> near_walls(const Bed& bed, const WallSurface& surface, double max_gap_m) {
   const std::vector<Vec3> points = wrapped_positions(bed);
-  return find_walls(bed, size_classes(bed, points, max_gap_m), max_gap_m);
+  return find_walls(bed, points, size_classes(bed, points, max_gap_m), surface, max_gap_m);
 }
 
 }  // namespace granrad

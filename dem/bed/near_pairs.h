@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "dem/bed/bed.h"
+#include "dem/bed/wall_surface.h"
 
 namespace granrad {
 
@@ -12,29 +13,39 @@ struct NearPair {
   double distance_m;  ///< between the centres (nearest periodic image)
 };
 
-/// A particle and a wall. The distance is from the centre to the nearest point of the wall.
+/// A particle and a place of a wall where the distance from the centre has a local minimum (inside a face, on
+/// an edge, at a corner; see wall_surface.h): the places where forces act are those where heat passes. A
+/// sphere in an edge of a mesh is near two of its faces, one over the seam of two walls near one of them.
 struct NearWall {
   std::int32_t i;
   std::int32_t wall;  ///< index into Bed::walls
   double distance_m;
+  /// Part of a whole gas lens that fits beside those of the nearer places: 1 - cos of the angle between the
+  /// faces, at most 1. Faces at right angles have whole lenses, flat ones share one.
+  double gas_share = 1;
 };
 
 struct NearPairs {
   std::vector<NearPair> particles;  ///< sorted by (i, j)
-  std::vector<NearWall> walls;      ///< sorted by (i, wall); each wall once per particle
+  std::vector<NearWall> walls;      ///< sorted by (i, wall, distance)
 };
 
 /// All pairs with surface gap (distance - r_i - r_j, or distance - r_i) <= max_gap_m, by a cell list.
 /// Walls without contact and shutters that are open at bed.time_s are left out. Cost O(N) for similar radii.
 NearPairs near_pairs(const Bed& bed, double max_gap_m);
 
-/// Its walls alone.
-std::vector<NearWall> near_walls(const Bed& bed, double max_gap_m);
+/// Its walls alone; `surface` is that of the bed's walls, at its time.
+std::vector<NearWall> near_walls(const Bed& bed, const WallSurface& surface, double max_gap_m);
+
+/// The near walls of particle i at p among the standing facets from `begin` to `end`, in ascending order.
+void append_near_walls(const WallSurface& surface, std::int32_t i, const Vec3& p, double radius_m,
+                       double max_gap_m, const std::int32_t* begin, const std::int32_t* end,
+                       std::vector<NearWall>& out);
 
 /// Pairs found in any order by several searchers, sorted by (i, j); `particles` is how many there are.
 std::vector<NearPair> sorted_by_rows(const std::vector<std::vector<NearPair>>& parts, std::size_t particles);
 
-/// Sorts by (i, wall) and keeps the nearest place of each wall.
-void keep_nearest(std::vector<NearWall>& walls);
+/// Sorts by (i, wall, distance).
+void sort_by_rows(std::vector<NearWall>& walls);
 
 }  // namespace granrad

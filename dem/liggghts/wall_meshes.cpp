@@ -1,6 +1,7 @@
 #include "dem/liggghts/wall_meshes.h"
 
 #include <algorithm>
+#include <set>
 
 #include "dem/base/constants.h"
 #include "dem/bed/wall_shape.h"
@@ -32,13 +33,18 @@ std::vector<Vec3> inside_periods(std::vector<Vec3> polygon, const Bed& bed) {
 }  // namespace
 
 WallMeshes::WallMeshes(const Bed& bed) {
+  std::set<std::vector<std::array<double, 3>>> known;  // the other side of a plate is the same face
   for (const auto& wall : bed.walls) {
     const bool standing = stands(wall, bed.time_s);
     for (const auto& face : faces_of(wall)) {
       const auto number = static_cast<std::int64_t>(first_.size());
       first_.push_back({0, -1});
       const auto corners = inside_periods(face.vertices, bed);
-      if (standing && corners.size() > 2) add(wall, corners, number);
+      if (!standing || corners.size() < 3) continue;
+      std::vector<std::array<double, 3>> outline;
+      for (const Vec3& v : corners) outline.push_back({v.x, v.y, v.z});
+      std::sort(outline.begin(), outline.end());
+      if (known.insert(std::move(outline)).second) add(wall, corners, number);
     }
   }
 }

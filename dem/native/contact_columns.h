@@ -1,5 +1,5 @@
 #pragma once
-#include "dem/native/aligned.h"
+#include "dem/base/aligned.h"
 #include "dem/native/contact_law.h"
 #include "dem/native/kernels.h"
 

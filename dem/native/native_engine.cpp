@@ -259,8 +259,8 @@ NearPairs NativeEngine::near_pairs(const Bed& bed, double max_gap_m) {
   pairs.particles = near_particles(bed, e.rows, *e.lists, max_gap_m);
   if (!bed.walls.empty()) {
     const bool listed = complete.walls_m >= max_gap_m && !e.periods->any && e.surface->is_whole();
-    pairs.walls = listed ? near_walls(bed, *e.lists, e.rows, *e.surface, max_gap_m)
-                         : granrad::near_walls(bed, max_gap_m);
+    pairs.walls = listed ? near_walls(*e.lists, e.rows, *e.surface, max_gap_m)
+                         : granrad::near_walls(bed, *e.surface, max_gap_m);
   }
   return pairs;
 }

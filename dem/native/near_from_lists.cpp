@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dem/bed/wall_shape.h"
-
 namespace granrad::native {
 namespace {
 
@@ -67,22 +65,28 @@ std::vector<NearPair> near_particles(const Bed& bed, const Rows& rows, const Con
   return sorted_by_rows(parts, bed.size());
 }
 
-std::vector<NearWall> near_walls(const Bed& bed, const ContactLists& lists, const Rows& rows,
+std::vector<NearWall> near_walls(const ContactLists& lists, const Rows& rows,
                                  const WallSurface& surface, double max_gap_m) {
-  std::vector<WallFace> faces;
-  for (const Wall& wall : bed.walls)
-    for (auto& face : faces_of(wall)) faces.push_back(std::move(face));
   std::vector<NearWall> found;
-  for (const Share& share : lists.shares())
-    for (const auto& [row, facet] : share.walls.near()) {
-      const WallFace& face = faces[facet];
+  std::vector<std::int32_t> facets;
+  for (const Share& share : lists.shares()) {
+    const auto& near = share.walls.near();
+    for (std::size_t k = 0; k < near.size();) {
+      const auto row = near[k].row;
       const Vec3 p = rows.position_of(row);
       const double most = rows.radius[row] + max_gap_m;
-      if (!surface.stands(facet) || std::abs(dot(face.normal, p - face.vertices[0])) > most) continue;
-      const double distance = distance_to(face, p);
-      if (distance <= most) found.push_back({rows.bed_index[row], surface.wall(facet), distance});
+      facets.clear();
+      for (; k < near.size() && near[k].row == row; ++k) {
+        const auto f = near[k].facet;
+        if (surface.stands(f) && std::abs(surface.height(f, p)) < most && surface.distance(f, p) < most)
+          facets.push_back(f);
+      }
+      if (!facets.empty())
+        append_near_walls(surface, rows.bed_index[row], p, rows.radius[row], max_gap_m, facets.data(),
+                          facets.data() + facets.size(), found);
     }
-  keep_nearest(found);
+  }
+  sort_by_rows(found);
   return found;
 }
 

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "dem/native/aligned.h"
+#include "dem/base/aligned.h"
 #include "dem/native/contact_columns.h"
 #include "dem/native/grid.h"
 #include "dem/native/kernels.h"

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "dem/base/aligned.h"
 #include "dem/bed/bed.h"
-#include "dem/native/aligned.h"
 #include "dem/native/kernels.h"
 
 namespace granrad::native {

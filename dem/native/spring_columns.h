@@ -1,8 +1,8 @@
 #pragma once
 #include <cstdint>
 
+#include "dem/base/aligned.h"
 #include "dem/base/vec3.h"
-#include "dem/native/aligned.h"
 
 namespace granrad::native {
 

@@ -9,21 +9,6 @@ namespace granrad::native {
 namespace {
 
 using Touch = WallSurface::Touch;
-using Kind = WallSurface::Kind;
-
-/// Contact points closer than this fraction of the radius are one.
-constexpr double same_point = 1e-4;
-/// Adjacent faces bent by less than one degree are one smooth wall.
-constexpr double smooth_bend = 0.99985;
-
-/// Of two touches that report the same wall, the face stays before the edge before the vertex, then the deeper.
-bool repeats(const WallSurface& surface, const Touch& t, const Touch& kept, double tolerance) {
-  if (t.feature == kept.feature || norm(t.point - kept.point) < tolerance) return true;
-  if (kept.kind == Kind::face && t.kind != Kind::face)
-    return std::abs(dot(t.point - kept.point, kept.normal)) < tolerance;
-  return kept.kind == Kind::face && t.kind == Kind::face && dot(t.normal, kept.normal) > smooth_bend &&
-         surface.adjacent(t.feature, kept.feature);
-}
 
 /// Whether facet f is closer than reach to p or, where p is near a periodic border, to its image across it.
 bool is_close(const WallSurface& surface, const Periods& periods, std::int32_t f, const Vec3& p,
@@ -45,25 +30,6 @@ bool is_close(const WallSurface& surface, const Periods& periods, std::int32_t f
           return true;
       }
   return false;
-}
-
-std::vector<Touch> distinct_touches(const WallSurface& surface, const std::int32_t* begin,
-                                    const std::int32_t* end, const Vec3& p, double radius) {
-  std::vector<Touch> all, kept;
-  for (auto f = begin; f != end; ++f) surface.touches(*f, p, radius, all);
-  if (all.empty()) {  // rounding may leave a crack between features: the nearest side closes it
-    for (auto f = begin; f != end; ++f)
-      if (surface.stands(*f) && surface.distance(*f, p) < radius) all.push_back(surface.nearest(*f, p));
-  }
-  std::sort(all.begin(), all.end(), [](const Touch& a, const Touch& b) {
-    if (a.kind != b.kind) return a.kind < b.kind;
-    return a.distance_m != b.distance_m ? a.distance_m < b.distance_m : a.feature < b.feature;
-  });
-  for (const auto& t : all) {
-    const auto same = [&](const Touch& k) { return repeats(surface, t, k, same_point * radius); };
-    if (std::none_of(kept.begin(), kept.end(), same)) kept.push_back(t);
-  }
-  return kept;
 }
 
 }  // namespace
@@ -172,8 +138,13 @@ void WallContacts::refresh(const WallSurface& surface, const Rows& rows, const P
         close.push_back(near_[k].facet);
     if (close.empty()) continue;
     if (acts_as_planes(surface, periods, p, margin, close)) {
-      for (const auto f : close)
-        if (surface.foot_inside(f, p)) add_plane(row, f, surface.group(f), kept);
+      // Faces back to back, or one over the other, are one plane.
+      const auto first = facets_.size();
+      for (const auto f : close) {
+        const auto same = [&](std::int32_t g) { return surface.in_one_plane(f, g); };
+        if (surface.foot_inside(f, p) && std::none_of(facets_.begin() + first, facets_.end(), same))
+          add_plane(row, f, surface.group(f), kept);
+      }
       continue;
     }
     Border border{row, border_facets_.size(), border_facets_.size() + close.size(), {}};
@@ -279,8 +250,9 @@ WorstContact WallContacts::border_forces(const WallSurface& surface, Rows& rows,
                                          const std::vector<Material>& materials, Border& border) {
   const auto i = border.row;
   const Vec3 p = periods.wrapped(rows.position_of(i));
-  const auto touches = distinct_touches(surface, border_facets_.data() + border.facets_begin,
-                                        border_facets_.data() + border.facets_end, p, rows.radius[i]);
+  const auto touches =
+      surface.distinct_touches(border_facets_.data() + border.facets_begin,
+                               border_facets_.data() + border.facets_end, p, rows.radius[i], rows.radius[i]);
   if (touches.empty()) {
     border.springs.clear();
     return {};

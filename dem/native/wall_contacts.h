@@ -3,12 +3,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "dem/bed/wall_surface.h"
 #include "dem/native/contact_columns.h"
 #include "dem/native/grid.h"
 #include "dem/native/kernels.h"
 #include "dem/native/rows.h"
 #include "dem/native/touch_sums.h"
-#include "dem/native/wall_surface.h"
 
 namespace granrad::native {
 

@@ -55,6 +55,7 @@ struct Scene {
   Box box;
   std::vector<Wall> walls;         ///< the box's six in the order x_min..z_max, then polygons, then meshes
   std::size_t box_wall_count = 0;  ///< how many of them, in front, are faces of the box
+  std::vector<std::string> notes;  ///< what was done to the walls (see cover_walls)
   std::array<bool, 3> periodic{};
   std::vector<Box> removals;  ///< [[remove]]: particles whose centre comes into one of these leave
   Box region;                               ///< the heat-transfer region

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "dem/base/error.h"
+#include "dem/bed/wall_cover.h"
 #include "dem/bed/wall_shape.h"
 #include "dem/io/import_stl.h"
 #include "dem/scene/scene_parts.h"
@@ -26,9 +27,13 @@ class GeometryReader {
     if (box_given) read_box(box);
     read_box_walls(box_given && box.boolean({"walls", "faces of the box are walls"}, true));
     for (auto& table : root_.tables({"polygon", "Planar convex walls"})) add(table, {polygon(table)});
-    for (auto& table : root_.tables({"mesh", "Walls from STL files"})) add(table, mesh(table));
+    for (auto& table : root_.tables({"mesh", "Walls from STL files"})) {
+      const std::string name = table.string({"name", "of the wall, in results"});
+      add(table, mesh(table, name), name);
+    }
     if (!box_given) box_around_walls(box);
     read_region(root_.table({"region", "Where heat transfer is computed"}));
+    lay_walls();
   }
 
  private:
@@ -58,6 +63,7 @@ class GeometryReader {
         read_properties(table, wall);
         refuse_moving_across(table, wall);
         scene_.walls.push_back(std::move(wall));
+        line_.push_back(0);
       } else if (table.present()) {
         tables.problem(walls[face].name, has_walls ? "this wall does not exist: the box is periodic across it"
                                                    : "this wall does not exist: the box has no walls");
@@ -66,44 +72,54 @@ class GeometryReader {
     scene_.box_wall_count = scene_.walls.size();
   }
 
-  void read_properties(TomlTable& table, Wall& wall) {
+  /// `inherits`: what the table does not say stays as it is.
+  void read_properties(TomlTable& table, Wall& wall, bool inherits = false) {
     const std::vector<std::string> roles{"isothermal", "adiabatic", "open", "excluded"};
-    if (roles_required_ && !table.has("role"))
+    if (roles_required_ && !inherits && !table.has("role"))
       table.problem("role",
                     "missing: radiation is on, so every wall must choose \"isothermal\", \"adiabatic\", "
                     "\"open\" or \"excluded\"");
+    const WallRole before = wall.role;
     const std::string role = table.choice(
         {"role",
          "isothermal: held at temperature_K; adiabatic: re-radiates what it receives; open: black surroundings; excluded: left out of the exchange",
          "required when radiation is on, else adiabatic"},
-        roles, "adiabatic");
+        roles, inherits ? to_string(before) : "adiabatic");
     wall.role = static_cast<WallRole>(std::find(roles.begin(), roles.end(), role) - roles.begin());
-    const bool has_temperature = wall.role == WallRole::isothermal || wall.role == WallRole::open;
-    if (has_temperature)
-      wall.temperature_K = table.number({"temperature_K", "temperature of an isothermal or open wall"},
-                                        {.unit = "K", .min = 0, .min_exclusive = true});
-    else if (table.has("temperature_K"))
-      table.problem("temperature_K",
-                    fmt::format("an {} wall has no temperature of its own: remove it, or choose "
-                                "role = \"isothermal\"",
-                                role));
+    read_temperature(table, wall, inherits && has_temperature(before));
     if (wall.role == WallRole::open) {
       wall.emissivity = 1;
       if (table.has("emissivity"))
         table.problem("emissivity",
                       "an open wall is the black surroundings: remove it, or choose role = \"isothermal\"");
     } else {
-      wall.emissivity =
-          table.number({"emissivity", "of the wall, grey and diffuse", "emissivity of the material"},
-                       {.min = 0, .max = 1, .min_exclusive = true, .why = "grey diffuse surface"},
-                       scene_.materials[0].emissivity);
+      wall.emissivity = table.number(
+          {"emissivity", "of the wall, grey and diffuse", "emissivity of the material"},
+          {.min = 0, .max = 1, .min_exclusive = true, .why = "grey diffuse surface"},
+          inherits && before != WallRole::open ? wall.emissivity : scene_.materials[0].emissivity);
     }
     wall.contact =
         table.boolean({"contact", "particles touch it", "true, but for the ends of a plug"}, wall.contact);
     wall.velocity_m_s = table.vec3({"velocity_m_s", "speed of the surface, which drags particles along it"},
-                                   {.unit = "m/s"}, Vec3{});
+                                   {.unit = "m/s"}, wall.velocity_m_s);
     wall.opens_at_s = table.number({"opens_at_s", "time at which the wall is taken away", "never"},
                                    {.unit = "s", .min = 0}, wall.opens_at_s);
+  }
+
+  static bool has_temperature(WallRole role) {
+    return role == WallRole::isothermal || role == WallRole::open;
+  }
+
+  static void read_temperature(TomlTable& table, Wall& wall, bool inherits) {
+    const Key key{"temperature_K", "temperature of an isothermal or open wall"};
+    const NumberRule rule{.unit = "K", .min = 0, .min_exclusive = true};
+    if (has_temperature(wall.role))
+      wall.temperature_K = inherits ? table.number(key, rule, wall.temperature_K) : table.number(key, rule);
+    else if (table.has("temperature_K"))
+      table.problem("temperature_K",
+                    fmt::format("an {} wall has no temperature of its own: remove it, or choose "
+                                "role = \"isothermal\"",
+                                to_string(wall.role)));
   }
 
   Wall polygon(TomlTable& table) {
@@ -111,8 +127,15 @@ class GeometryReader {
     wall.name = table.string({"name", "of the wall, in results"});
     wall.vertices = table.vec3_list(
         {"vertices_m", "corners in order, counter-clockwise seen from the particles"}, {.unit = "m"}, 3);
-    if (wall.vertices.size() >= 3)
-      if (const std::string fault = polygon_fault(wall); !fault.empty()) table.problem("vertices_m", fault);
+    if (wall.vertices.size() < 3) {
+      wall.vertices.clear();
+      return wall;
+    }
+    if (const std::string fault = polygon_fault(wall); !fault.empty()) {
+      table.problem("vertices_m", fault);
+      wall.vertices.clear();
+    }
+    if (table.boolean({"flip", "turn the side that radiates"}, false)) flip(wall);
     return wall;
   }
 
@@ -137,12 +160,11 @@ class GeometryReader {
     return "";
   }
 
-  std::vector<Wall> mesh(TomlTable& table) {
-    const std::string name = table.string({"name", "of the wall, in results"});
+  std::vector<Wall> mesh(TomlTable& table, const std::string& name) {
     const double scale =
         table.number({"scale", "metres per unit of the file"}, {.min = 0, .min_exclusive = true}, 1.0);
     const auto file = table.file({"file", "STL, text or binary; beside the scene"}, true);
-    const bool flip = table.boolean({"flip", "turn the surface inside out"}, false);
+    const bool turned = table.boolean({"flip", "turn the side that radiates"}, false);
     if (file.empty()) return {};
     std::vector<Wall> walls;
     try {
@@ -150,26 +172,67 @@ class GeometryReader {
     } catch (const Error& error) {
       table.problem("file", error.what());
     }
-    if (flip)
-      for (auto& wall : walls) granrad::flip(wall);
+    if (turned)
+      for (auto& wall : walls) flip(wall);
     return walls;
   }
 
-  void add(TomlTable& table, std::vector<Wall> walls) {
+  /// The walls of one table, all alike but for what [mesh.solid."NAME"] says of each.
+  void add(TomlTable& table, std::vector<Wall> walls, const std::string& mesh = "") {
     Wall properties;
-    read_properties(table, properties);
+    properties.emissivity = scene_.materials[0].emissivity;
+    const bool all_chosen =
+        !mesh.empty() && !walls.empty() && std::all_of(walls.begin(), walls.end(), [&](const Wall& wall) {
+          return solid_table(table, mesh, wall).has("role");
+        });
+    read_properties(table, properties, all_chosen);
+    const bool two_sided =
+        table.boolean({"two_sided", "both sides radiate (a thin plate in the bed)"}, false);
     for (auto& wall : walls) {
-      wall.role = properties.role;
-      wall.temperature_K = properties.temperature_K;
-      wall.emissivity = properties.emissivity;
-      wall.contact = properties.contact;
-      wall.velocity_m_s = properties.velocity_m_s;
-      wall.opens_at_s = properties.opens_at_s;
+      Wall shaped = properties;
+      shaped.name = wall.name;
+      shaped.vertices = std::move(wall.vertices);
+      shaped.triangles = std::move(wall.triangles);
+      wall = std::move(shaped);
+      if (!mesh.empty())
+        if (TomlTable solid = solid_table(table, mesh, wall); solid.present())
+          read_properties(solid, wall, true);
+      if (two_sided) make_two_sided(wall);
       const auto same = [&](const Wall& other) { return other.name == wall.name; };
       if (std::any_of(scene_.walls.begin(), scene_.walls.end(), same))
         table.problem("name", fmt::format("another wall is called {}; names must differ", wall.name));
+      if (wall.vertices.empty()) continue;
       refuse_moving_across(table, wall);
-      if (!wall.vertices.empty()) scene_.walls.push_back(std::move(wall));
+      scene_.walls.push_back(std::move(wall));
+      line_.push_back(table.line());
+    }
+  }
+
+  /// [mesh.solid."NAME"] of a wall of a mesh; NAME is what follows the name of the mesh in that of the wall.
+  static TomlTable solid_table(TomlTable& table, const std::string& mesh, const Wall& wall) {
+    const bool longer = wall.name.size() > mesh.size() + 1;
+    const std::string solid = longer ? wall.name.substr(mesh.size() + 1) : wall.name;
+    TomlTable solids = table.table({"solid", "properties of single solids of the file, by their names"});
+    return solids.table({solid, "a solid of the file; what it does not say is that of the mesh", {}, "NAME"});
+  }
+
+  static void make_two_sided(Wall& wall) {
+    std::vector<WallFace> faces = faces_of(wall);
+    flip(wall);
+    for (auto& face : faces_of(wall)) faces.push_back(std::move(face));
+    set_faces(wall, faces);
+  }
+
+  /// One surface where walls lie in one place (cover_walls).
+  void lay_walls() {
+    try {
+      const WallCover cover = cover_walls(scene_.walls, line_);
+      scene_.notes.insert(scene_.notes.end(), cover.notes.begin(), cover.notes.end());
+      const auto box_walls_kept = std::count_if(cover.kept.begin(), cover.kept.end(),
+                                                [&](std::size_t w) { return w < scene_.box_wall_count; });
+      scene_.box_wall_count = static_cast<std::size_t>(box_walls_kept);
+    } catch (const InputError& error) {
+      for (const auto& problem : error.problems()) root_.problem("", problem);
     }
   }
 
@@ -182,11 +245,12 @@ class GeometryReader {
     for (const auto& face : faces_of(wall)) {
       const double across = std::abs(dot(face.normal, v));
       if (across <= rounding * norm(v)) continue;
-      table.problem("velocity_m_s",
-                    advised(fmt::format("{:.3g} m/s of it point across the surface of wall {}, which does not move",
-                                        across, wall.name),
-                            "give a velocity along the surface (a belt), and faces that are no belt a wall of "
-                            "their own"));
+      table.problem(
+          "velocity_m_s",
+          advised(fmt::format("{:.3g} m/s of it point across the surface of wall {}, which does not move",
+                              across, wall.name),
+                  "give a velocity along the surface (a belt), and faces that are no belt a wall of "
+                  "their own"));
       return;
     }
   }
@@ -224,6 +288,7 @@ class GeometryReader {
   TomlTable root_;
   Scene& scene_;
   bool roles_required_;
+  std::vector<std::int64_t> line_;  ///< of each wall in the file: the later covers the earlier
 };
 
 }  // namespace

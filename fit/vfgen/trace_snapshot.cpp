@@ -9,12 +9,14 @@
 #include <numeric>
 
 #include "dem/base/error.h"
+#include "dem/bed/wall_cover.h"
 #include "dem/io/import_stl.h"
 #include "dem/io/snapshot.h"
 #include "fit/vfgen/overlaps.h"
 #include "raytrace/lines/line_plan.h"
 #include "raytrace/lines/line_sweep.h"
 #include "raytrace/mesh_check.h"
+#include "raytrace/rays/enclosure_check.h"
 
 namespace granrad {
 
@@ -251,6 +253,14 @@ Box parse_box(const std::string& text) {
   return {*origin, *origin + *size};
 }
 
+namespace {
+
+void add_notes(SnapshotEnclosure& to, const std::vector<std::string>& notes) {
+  for (const auto& note : notes) to.meshes += (to.meshes.empty() ? "" : "\n") + note;
+}
+
+}  // namespace
+
 SnapshotEnclosure read_enclosure(const std::filesystem::path& snapshot, const EnclosureSettings& settings) {
   const Snapshot read = read_snapshot(snapshot, settings.radius_m, settings.which);
   if (settings.radius_m > 0 && read.has_radius)
@@ -267,7 +277,22 @@ SnapshotEnclosure read_enclosure(const std::filesystem::path& snapshot, const En
   result.note = read.note;
   if (!settings.stl.empty()) result.meshes = add_meshes(bed, settings.stl);
   if (settings.box) add_box(bed, *settings.box);
-  result.enclosure = make_enclosure(bed, settings.box || own_walls ? bed.box : unbounded());
+  add_notes(result, cover_walls(bed.walls).notes);
+  const Box region = settings.box || own_walls ? bed.box : unbounded();
+  result.enclosure = make_enclosure(bed, region);
+  EnclosureCheck check = check_enclosure(result.enclosure, bed.id);
+  if (!settings.stl.empty())
+    if (const auto turned = turn_walls_to_particles(bed.walls, check, result.enclosure); !turned.empty()) {
+      add_notes(result, turned);
+      add_notes(result, cover_walls(bed.walls).notes);
+      result.enclosure = make_enclosure(bed, region);
+      check = check_enclosure(result.enclosure, bed.id);
+    }
+  if (!check.problems.empty()) {
+    for (auto& problem : check.problems) problem = snapshot.string() + ": " + problem;
+    throw InputError(check.problems);
+  }
+  add_notes(result, check.notes);
   result.overlaps = check_overlaps(bed, result.enclosure, snapshot.string());
   restore_file_order(result.enclosure, read.file_row);
   result.left_out = bed.size() - result.enclosure.sphere_count();

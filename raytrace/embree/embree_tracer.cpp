@@ -27,7 +27,7 @@ struct Query : RTCIntersectContext {
   double ball_distance = infinity, ball_depth = 0;
   std::int32_t ball = -1;
   double front_distance = infinity, back_distance = infinity;
-  std::int32_t facet = -1;
+  std::int32_t facet = -1, back_facet = -1;
 };
 
 void shorten(RTCRayHitN* rayhit, double distance, double margin) {
@@ -65,6 +65,7 @@ struct EmbreeTracer::Impl : TracingGeometry {
 
   void attach(std::size_t count, RTCBoundsFunction bounds, RTCIntersectFunctionN intersect);
   void find_cut_spheres();
+  std::int32_t face_before(const Vec3& centre, const Vec3& origin) const;
 
   static void ball_bounds(const RTCBoundsFunctionArguments* args);
   static void facet_bounds(const RTCBoundsFunctionArguments* args);
@@ -185,6 +186,7 @@ void EmbreeTracer::Impl::meet_facet(const RTCIntersectFunctionNArguments* args) 
   const double back = facets.back_crossing(facet, query.origin, query.direction);
   if (back < query.back_distance) {
     query.back_distance = back;
+    query.back_facet = facet;
     shorten(args->rayhit, back, 2 * impl.pad);
   }
 }
@@ -212,6 +214,32 @@ void EmbreeTracer::Impl::find_cut_spheres() {
     rtcPointQuery(scene, &point, &context, visit, &found);
     cut_by_wall[static_cast<std::size_t>(i)] = found.any;
   }
+}
+
+/// The face that hides `origin` from the centre of its sphere, or -1. It is no further from `origin` than the
+/// centre is.
+std::int32_t EmbreeTracer::Impl::face_before(const Vec3& centre, const Vec3& origin) const {
+  struct Asked {
+    const Impl* impl;
+    const Vec3 &centre, &origin;
+    std::int32_t face;
+  };
+  const auto visit = [](RTCPointQueryFunctionArguments* args) {
+    auto& asked = *static_cast<Asked*>(args->userPtr);
+    const Impl& impl = *asked.impl;
+    if (args->geomID != (impl.balls.empty() ? 0u : 1u)) return false;
+    const auto face = static_cast<std::int32_t>(args->primID);
+    if ((asked.face < 0 || face < asked.face) && impl.hides(face, asked.centre, asked.origin))
+      asked.face = face;
+    return false;
+  };
+  RTCPointQuery point{static_cast<float>(origin.x), static_cast<float>(origin.y),
+                      static_cast<float>(origin.z), 0, static_cast<float>(norm(origin - centre) + 2 * pad)};
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  Asked asked{this, centre, origin, -1};
+  rtcPointQuery(scene, &point, &context, visit, &asked);
+  return asked.face;
 }
 
 void EmbreeTracer::Impl::walk(Query& query, double limit) const {
@@ -259,7 +287,7 @@ EmbreeTracer::Impl::Nearest EmbreeTracer::Impl::nearest(const Query& query, cons
   const double wall = std::min(exit.distance, query.front_distance);
   const double first = std::min(wall, query.ball_distance);
   if (query.back_distance < first - loose_facets->tolerance() && query.back_distance <= limit)
-    return {Met::back, query.back_distance, -1};
+    return {Met::back, query.back_distance, query.back_facet};
   if (!(first <= limit) || first == infinity) return {Met::nothing, infinity, -1};
   if (query.ball_distance < wall || query.ball_depth > 0) return {Met::ball, query.ball_distance, query.ball};
   return exit.distance <= query.front_distance ? Nearest{Met::cell, wall, exit.facet}
@@ -287,7 +315,7 @@ Hit EmbreeTracer::Impl::hit(const Nearest& n, const Query& query) const {
   const auto at = [&] { return query.origin + n.distance * query.direction; };
   switch (n.met) {
     case Met::back:
-      return {-1, n.distance * unit_m, to_metres(at()), {}};
+      return {-1, n.distance * unit_m, to_metres(at()), {}, loose_facets->wall(n.number)};
     case Met::ball: {
       const auto sphere = static_cast<std::size_t>(sphere_of_ball[static_cast<std::size_t>(n.number)]);
       const Vec3 normal = normalized(at() - balls[static_cast<std::size_t>(n.number)].centre);
@@ -337,7 +365,7 @@ bool EmbreeTracer::Impl::has_left(const Vec3& origin, const Vec3& direction) con
 /// moves along with it. A ray that meets nothing in `most_periods` is lost.
 Hit EmbreeTracer::Impl::trace_periodic(Vec3 origin, const Vec3& direction, std::int32_t from,
                                        const Vec3& from_normal) const {
-  constexpr int most_periods = 10000;
+  constexpr int most_periods = 10000;  // only along an empty box, or exactly across its open sides
   const Vec3 period = box_max - box_min;
   const bool from_sphere = from >= 0 && from < spheres;
   Vec3 source = from_sphere ? balls[static_cast<std::size_t>(from)].centre : Vec3{};
@@ -349,7 +377,7 @@ Hit EmbreeTracer::Impl::trace_periodic(Vec3 origin, const Vec3& direction, std::
     source[k] -= shift;
   }
   if (from_sphere && cut_by_wall[static_cast<std::size_t>(from)])
-    if (const auto facet = polygon_before(source, origin); facet >= 0)
+    if (const auto facet = face_before(source, origin); facet >= 0)
       return hit_on_facet(*loose_facets, facet, origin, 0);
 
   double travelled = 0;

@@ -12,6 +12,7 @@ struct Hit {
   double distance_m;     ///< infinite for the surroundings
   Vec3 position_m;       ///< on the surface (for spheres projected onto it in double precision)
   Vec3 normal;           ///< unit, towards the void
+  std::int32_t back_of = -1;  ///< leaked: the wall (not surface) whose back was met
 };
 
 /// Where a ray ends, without the place: all that view factors need.
@@ -32,7 +33,8 @@ class EmbreeTracer {
 
   /// Follows a ray from `origin` (on surface `from`, or anywhere with from = -1) along unit `direction`.
   /// A convex surface never hits itself, by identity; a ray that starts inside another sphere hits it at
-  /// distance zero; a ray that meets the back of a wall is leaked. Thread-safe.
+  /// distance zero; a ray that meets the back of a wall is leaked, as is one that runs for ever along a
+  /// periodic box. Thread-safe.
   /// `from_normal`: of wall `from` at the origin; without it a ray from a wall that is a plate of two sides
   /// meets the back of its own plate.
   Hit first_hit(const Vec3& origin, const Vec3& direction, std::int32_t from,

@@ -56,7 +56,7 @@ void TracingGeometry::choose_units(const Enclosure& enclosure) {
       all.max[k] = enclosure.box.max[k];
     }
   if (all.is_empty()) return;  // nothing but surroundings
-  centre_m = 0.5 * (all.min + all.max);
+  centre_m = all.middle();
   const double extent = norm(all.size());
   unit_m = spheres > 0 ? radius_sum / spheres : extent / 100;
   pad = 1e-6 * extent / unit_m;
@@ -128,15 +128,11 @@ std::int32_t TracingGeometry::image_at(std::int32_t sphere, const Vec3& centre) 
   return -1;
 }
 
-std::int32_t TracingGeometry::polygon_before(const Vec3& centre, const Vec3& origin) const {
+bool TracingGeometry::hides(std::int32_t face, const Vec3& centre, const Vec3& origin) const {
   const Facets& f = *loose_facets;
-  for (std::int32_t k = 0; k < f.count(); ++k) {
-    const double h = f.height(k, origin);
-    if (h < -f.tolerance() && f.height(k, centre) > 0 &&
-        f.edge_margin(k, origin - h * f.normal(k)) >= -f.tolerance())
-      return k;
-  }
-  return -1;
+  const double h = f.height(face, origin);
+  return h < -f.tolerance() && f.height(face, centre) > 0 &&
+         f.edge_margin(face, origin - h * f.normal(face)) >= -f.tolerance();
 }
 
 }  // namespace granrad

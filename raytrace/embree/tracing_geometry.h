@@ -26,8 +26,8 @@ struct TracingGeometry {
   Vec3 to_metres(const Vec3& p) const { return p * unit_m + centre_m; }
   /// The image of a sphere whose centre is here, or -1.
   std::int32_t image_at(std::int32_t sphere, const Vec3& centre) const;
-  /// The face that hides `origin` from the centre of its sphere, or -1.
-  std::int32_t polygon_before(const Vec3& centre, const Vec3& origin) const;
+  /// Whether a face hides `origin` from the centre of its sphere.
+  bool hides(std::int32_t face, const Vec3& centre, const Vec3& origin) const;
 
   Vec3 centre_m;      ///< origin of the tracing coordinates
   double unit_m = 1;  ///< length of a tracing unit: the mean radius

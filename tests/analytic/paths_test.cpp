@@ -6,6 +6,7 @@
 
 #include "coupling/heat/radiosity.h"
 #include "dem/base/random.h"
+#include "dem/bed/wall_shape.h"
 #include "path_cases.h"
 #include "raytrace/rays/emission.h"
 #include "rectangle_factors.h"

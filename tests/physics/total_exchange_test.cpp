@@ -5,6 +5,7 @@
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
 #include "dem/base/random.h"
+#include "dem/bed/wall_shape.h"
 #include "raytrace/rays/view_factors.h"
 #include "tests/enclosures.h"
 

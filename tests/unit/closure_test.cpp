@@ -4,6 +4,7 @@
 
 #include "dem/base/error.h"
 #include "dem/base/random.h"
+#include "dem/bed/wall_shape.h"
 #include "raytrace/exact.h"
 #include "tests/enclosures.h"
 

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "dem/base/error.h"
+#include "dem/bed/wall_shape.h"
 #include "dem/io/import_stl.h"
 #include "dem/io/snapshot.h"
 #include "tests/source_dir.h"

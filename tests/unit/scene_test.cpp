@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "dem/base/error.h"
+#include "dem/bed/wall_shape.h"
 #include "dem/io/snapshot.h"
 #include "tests/source_dir.h"
 #include "tests/temporary_folder.h"

@@ -3,14 +3,15 @@
 #include <cstdint>
 #include <vector>
 
+#include "dem/base/aligned.h"
 #include "dem/bed/wall.h"
-#include "dem/native/aligned.h"
 
-namespace granrad::native {
+namespace granrad {
 
 /// All walls as one surface of convex planar facets (polygons and triangles) that know their neighbours:
 /// vertices at equal positions are one vertex, sides between equal vertices one edge, whatever wall they
-/// belong to. Facets joined through coplanar edges form a group, which acts as one plane.
+/// belong to. Facets joined through coplanar edges form a group, which acts as one plane. A facet with the
+/// corners of an earlier one is its twin (the other side of a plate): the earlier stands for both.
 ///
 /// A sphere touches the surface where the distance from its centre has a local minimum: inside a facet, on an
 /// edge, or at a vertex. Tested with the signs of the same numbers from both sides, so a contact is found
@@ -36,6 +37,18 @@ class WallSurface {
   /// `reach_m`. Edges and vertices shared by several facets are reported by each of them.
   void touches(std::int32_t f, const Vec3& p, double reach_m, std::vector<Touch>& out) const;
 
+  /// The distinct places where a sphere of this radius around p is closer than `reach_m` to facets of an
+  /// ascending list: of touches that report the same wall, the one of lower rank (face, edge, vertex), then
+  /// the nearer, stays. Faces first. Where rounding leaves a crack between features the nearest side closes
+  /// it.
+  std::vector<Touch> distinct_touches(const std::int32_t* begin, const std::int32_t* end, const Vec3& p,
+                                      double reach_m, double radius_m) const;
+  /// As distinct_touches, of touches that were found already.
+  std::vector<Touch> distinct(std::vector<Touch> all, double radius_m) const;
+  /// The wall a touch belongs to: of facets of `begin` to `end` back to back, the one that faces p.
+  std::int32_t wall_facing(const Touch& touch, const Vec3& p, const std::int32_t* begin,
+                           const std::int32_t* end) const;
+
   /// The nearest point of the sides of facet f.
   Touch nearest(std::int32_t f, const Vec3& p) const;
 
@@ -46,6 +59,10 @@ class WallSurface {
   /// Facets are the faces of all walls in their order: none was left out for having no area.
   bool is_whole() const { return whole_; }
   bool stands(std::int32_t f) const { return facets_[f].stands; }
+  /// Unit normal of the plane of the facet's group.
+  const Vec3& plane_normal(std::int32_t f) const { return facets_[facets_[f].group].normal; }
+  /// Whether two facets lie in one plane, whatever way they face.
+  bool in_one_plane(std::int32_t f, std::int32_t g) const { return coplanar(facets_[f], facets_[g]); }
   std::int32_t group(std::int32_t f) const { return facets_[f].group; }
   std::int32_t wall(std::int32_t f) const { return facets_[f].wall; }
   const Box& bounds(std::int32_t f) const { return facets_[f].bounds; }
@@ -81,7 +98,8 @@ class WallSurface {
     std::vector<Side> sides;
     Vec3 point, normal;
     Box bounds;
-    bool stands = true;
+    bool twin = false, stands = true;
+    std::int32_t back = -1;  ///< its twin that faces the other way
   };
   struct Edge {
     std::int32_t ends[2];
@@ -96,7 +114,10 @@ class WallSurface {
   Side& side_of(std::int32_t facet, std::int32_t edge);
   const Side& side_of(std::int32_t facet, std::int32_t edge) const;
   void add_facet(std::int32_t wall, const std::vector<Vec3>& corners);
+  void find_twins(const std::vector<Wall>& walls);
+  void split_sides();
   void join_sides();
+  bool repeats(const Touch& t, const Touch& kept, double tolerance_m) const;
   void group_coplanar(const std::vector<Wall>& walls);
   void fill_rows(const std::vector<Wall>& walls);
   bool coplanar(const Facet& a, const Facet& b) const;
@@ -117,4 +138,4 @@ class WallSurface {
   bool whole_ = true;
 };
 
-}  // namespace granrad::native
+}  // namespace granrad

@@ -6,7 +6,7 @@
 #include <new>
 #include <vector>
 
-namespace granrad::native {
+namespace granrad {
 
 /// Memory on cache-line boundaries; large blocks ask for huge pages, which spare random row accesses their
 /// TLB misses (a million particles run 1.3 times faster).
@@ -36,4 +36,4 @@ struct AlignedAllocator {
 template <class T>
 using AlignedVector = std::vector<T, AlignedAllocator<T>>;
 
-}  // namespace granrad::native
+}  // namespace granrad

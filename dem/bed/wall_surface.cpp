@@ -1,4 +1,4 @@
-#include "dem/native/wall_surface.h"
+#include "dem/bed/wall_surface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,10 @@
 #include <tuple>
 
 #include "dem/base/constants.h"
+#include "dem/bed/planar_cut.h"
 #include "dem/bed/wall_shape.h"
 
-namespace granrad::native {
+namespace granrad {
 namespace {
 
 /// Facets count as coplanar when their corners leave the common plane by less than this fraction of their
@@ -37,6 +38,8 @@ WallSurface::WallSurface(const std::vector<Wall>& walls) {
   vertices_ = std::move(welded);
   for (auto& f : facets_)
     for (auto& c : f.corners) c = new_number[c];
+  find_twins(walls);
+  split_sides();
   join_sides();
   group_coplanar(walls);
   fill_rows(walls);
@@ -61,6 +64,54 @@ void WallSurface::add_facet(std::int32_t wall, const std::vector<Vec3>& corners)
   facets_.push_back(std::move(f));
 }
 
+/// Facets with the same corners whose walls touch and open alike: the first stands for all.
+void WallSurface::find_twins(const std::vector<Wall>& walls) {
+  std::map<std::vector<std::int32_t>, std::vector<std::int32_t>> known;
+  for (std::int32_t n = 0; n < facet_count(); ++n) {
+    auto corners = facets_[n].corners;
+    std::sort(corners.begin(), corners.end());
+    auto& same = known[std::move(corners)];
+    for (const auto m : same) {
+      const Wall &v = walls[facets_[m].wall], &w = walls[facets_[n].wall];
+      if (v.contact != w.contact || v.opens_at_s != w.opens_at_s) continue;
+      facets_[n].twin = true;
+      if (dot(facets_[n].normal, facets_[m].normal) < 0) facets_[m].back = n;
+      break;
+    }
+    if (!facets_[n].twin) same.push_back(n);
+  }
+}
+
+/// Corners of a coplanar facet that lie inside a side divide it, so that the two share edges.
+void WallSurface::split_sides() {
+  Box all = Box::empty();
+  for (const auto& v : vertices_) all.include(v);
+  if (all.is_empty()) return;
+  const double slack_m = coplanar_tolerance * norm(all.size());
+  std::map<std::tuple<double, double, double>, std::int32_t> number_of;
+  CornerSet corners(slack_m);
+  for (std::size_t v = 0; v < vertices_.size(); ++v)
+    number_of.emplace(std::tuple(vertices_[v].x, vertices_[v].y, vertices_[v].z),
+                      static_cast<std::int32_t>(v));
+  std::vector<std::vector<std::int32_t>> facets_at(vertices_.size());
+  for (std::int32_t n = 0; n < facet_count(); ++n)
+    for (const auto c : facets_[n].corners) facets_at[c].push_back(n);
+  for (const auto& v : vertices_) corners.keep(v);
+  corners.sort();
+  for (auto& f : facets_) {
+    std::vector<Vec3> outline;
+    for (const auto c : f.corners) outline.push_back(vertices_[c]);
+    const auto is_of_coplanar = [&](const Vec3& p) {
+      const auto& around = facets_at[number_of.at({p.x, p.y, p.z})];
+      return std::any_of(around.begin(), around.end(),
+                         [&](std::int32_t g) { return coplanar(f, facets_[g]); });
+    };
+    if (!corners.insert_into(outline, is_of_coplanar)) continue;
+    f.corners.clear();
+    for (const auto& p : outline) f.corners.push_back(number_of.at({p.x, p.y, p.z}));
+  }
+}
+
 void WallSurface::join_sides() {
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> edge_between;
   edges_of_vertex_.resize(vertices_.size());
@@ -76,7 +127,7 @@ void WallSurface::join_sides() {
         edges_of_vertex_[a].push_back(at->second);
         edges_of_vertex_[b].push_back(at->second);
       }
-      edges_[at->second].facets.push_back(n);
+      if (!f.twin) edges_[at->second].facets.push_back(n);
       f.sides.push_back({at->second, normalized(cross(f.normal, vertices_[b] - vertices_[a]))});
     }
   }
@@ -98,7 +149,7 @@ void WallSurface::group_coplanar(const std::vector<Wall>& walls) {
     return v.velocity_m_s == w.velocity_m_s && v.opens_at_s == w.opens_at_s && v.contact == w.contact;
   };
   for (std::int32_t n = 0; n < facet_count(); ++n) {
-    if (facets_[n].group != n) continue;
+    if (facets_[n].group != n || facets_[n].twin) continue;
     std::vector<std::int32_t> front{n};
     while (!front.empty()) {
       const auto at = front.back();
@@ -121,7 +172,7 @@ void WallSurface::group_coplanar(const std::vector<Wall>& walls) {
   vertex_is_flat_.assign(vertices_.size(), true);
   std::vector<std::int32_t> group_at(vertices_.size(), -1);
   for (const auto& f : facets_)
-    for (std::size_t k = 0; k < f.corners.size(); ++k) {
+    for (std::size_t k = 0; k < f.corners.size() && !f.twin; ++k) {
       const auto c = f.corners[k];
       if (group_at[c] >= 0 && group_at[c] != f.group) vertex_is_flat_[c] = false;
       group_at[c] = f.group;
@@ -145,7 +196,7 @@ void WallSurface::fill_rows(const std::vector<Wall>& walls) {
 }
 
 void WallSurface::set_time(const std::vector<Wall>& walls, double time_s) {
-  for (auto& f : facets_) f.stands = granrad::stands(walls[f.wall], time_s);
+  for (auto& f : facets_) f.stands = !f.twin && granrad::stands(walls[f.wall], time_s);
 }
 
 WallSurface::Side& WallSurface::side_of(std::int32_t facet, std::int32_t edge) {
@@ -277,4 +328,4 @@ bool WallSurface::adjacent(std::int64_t a, std::int64_t b) const {
                      [&](const Edge& e) { return edge_in_group(e, a) && edge_in_group(e, b); });
 }
 
-}  // namespace granrad::native
+}  // namespace granrad

@@ -1,0 +1,397 @@
+// Requirement: walls that lie in one place are one surface, the later on top, for every source of radiation, for
+// conduction and for contact, however the same scene is written: moved, turned, scaled, with walls as box, polygons
+// or STL. A plate seen from both sides radiates from both, or is refused by every source.
+//
+// Truths: the heat of a small black sphere between black walls is A sigma sum_w F_w (T_w^4 - T^4), F the solid angle
+// of the wall at the centre / 4 pi (exact for planar walls); of a black vessel of one temperature A sigma (T_w^4 -
+// T^4). Conduction: a sphere that touches three faces gets three times what one face gives.
+//
+// Planted: the covered part left in place (the heat of the patch is off by half and more with paths); the later wall
+// cut instead of the earlier (the patch vanishes); a sheet of two sides traced without the normal of its start (the
+// plate loses a third); contact planes not told apart (the sphere sinks to 0.63 of Hertz); near walls by wall, not by
+// feature (a corner conducts a third). Each fails here.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "coupling/simulation/simulation.h"
+#include "dem/base/constants.h"
+#include "dem/base/error.h"
+#include "dem/bed/wall_cover.h"
+#include "dem/bed/wall_shape.h"
+#include "dem/engine_native.h"
+#include "raytrace/facets.h"
+#include "tests/temporary_folder.h"
+
+namespace granrad {
+namespace {
+
+constexpr double hot_K = 1000, cold_K = 300;
+double exitance(double t) {
+  return stefan_boltzmann * t * t * t * t;
+}
+
+using Move = std::function<Vec3(const Vec3&)>;
+using Corners = std::vector<Vec3>;
+
+std::string list(const Corners& corners) {
+  std::string text;
+  for (const Vec3& v : corners)
+    text += fmt::format("{}[{:.17g}, {:.17g}, {:.17g}]", text.empty() ? "" : ", ", v.x, v.y, v.z);
+  return "[" + text + "]";
+}
+
+std::string polygon(const std::string& name, const Corners& corners, double t) {
+  return fmt::format(
+      "[[polygon]]\nname = \"{}\"\nvertices_m = {}\nrole = \"isothermal\"\ntemperature_K = {}\nemissivity = 1\n",
+      name, list(corners), t);
+}
+
+std::string mesh(const std::string& name, double t, const std::string& more = "") {
+  return fmt::format(
+      "[[mesh]]\nname = \"{0}\"\nfile = \"{0}.stl\"\nrole = \"isothermal\"\ntemperature_K = {1}\nemissivity = 1\n{2}",
+      name, t, more);
+}
+
+std::string stl(const std::vector<Corners>& faces) {
+  std::string text = "solid s\n";
+  for (const auto& face : faces)
+    for (std::size_t k = 2; k < face.size(); ++k) {
+      text += "facet normal 0 0 0\nouter loop\n";
+      for (const Vec3& v : {face[0], face[k - 1], face[k]})
+        text += fmt::format("vertex {:.9g} {:.9g} {:.9g}\n", v.x, v.y, v.z);
+      text += "endloop\nendfacet\n";
+    }
+  return text + "endsolid s\n";
+}
+
+Corners moved(const Corners& corners, const Move& move) {
+  Corners all;
+  for (const Vec3& v : corners) all.push_back(move(v));
+  return all;
+}
+
+Corners reversed(Corners corners) {
+  return {corners.rbegin(), corners.rend()};
+}
+
+const Box room{{0, 0, 0}, {0.01, 0.01, 0.01}};
+const Corners patch{{0.003, 0.003, 0}, {0.007, 0.003, 0}, {0.007, 0.007, 0}, {0.003, 0.007, 0}};
+const Vec3 above{0.005, 0.005, 0.002};  ///< 2 mm over the middle of the patch
+
+std::string box_text(double t) {
+  std::string text = "[box]\nsize_m = [0.01, 0.01, 0.01]\n";
+  for (const auto& wall : box_walls(room))
+    text +=
+        fmt::format("[walls.{}]\nrole = \"isothermal\"\ntemperature_K = {}\nemissivity = 1\n", wall.name, t);
+  return text;
+}
+
+std::string polygons_text(const Move& move, double t, bool backwards = false) {
+  std::vector<std::string> all;
+  for (const auto& wall : box_walls(room))
+    all.push_back(polygon("wall_" + wall.name, moved(wall.vertices, move), t));
+  if (backwards) std::reverse(all.begin(), all.end());
+  std::string text;
+  for (const auto& one : all) text += one;
+  return text;
+}
+
+struct Written {
+  std::string walls;
+  Vec3 centre = above;
+  double radius = 5e-4;
+  std::map<std::string, std::string> files{};
+};
+
+/// Heat of the one sphere, W.
+double heat(const Written& scene, const std::string& source, double rays) {
+  const TemporaryFolder folder;
+  for (const auto& [name, text] : scene.files) folder.write(name, text);
+  folder.write("bed.csv", fmt::format("x,y,z,radius,temperature\n{:.17g},{:.17g},{:.17g},{},{}\n",
+                                      scene.centre.x, scene.centre.y, scene.centre.z, scene.radius, cold_K));
+  const auto file = folder.write(
+      "scene.toml",
+      fmt::format(
+          "[scene]\nname = \"s\"\nend_time_s = 0.01\n[material]\ndensity_kg_m3 = 2500\n"
+          "specific_heat_J_kgK = 800\nconductivity_W_mK = 1\nyoungs_modulus_Pa = 5e6\npoisson_ratio = 0.3\n"
+          "restitution = 0.5\nfriction = 0.3\nemissivity = 1\n[particles]\nfile = \"bed.csv\"\n[dem]\nengine = "
+          "\"none\"\n[conduction]\nsolid = false\n[radiation]\nsource = \"{}\"\nrays = {}\nevery_s = 0.01\n{}",
+          source, rays, scene.walls));
+  const Case c = read_case(file, {});
+  Simulation simulation(c, 1);
+  simulation.start();
+  return simulation.draw_radiation(1).heat_W.at(0);
+}
+
+const std::vector<std::pair<std::string, double>> sources = {
+    {"paths", 30000}, {"embree", 20000}, {"lines", 24000}};
+
+TEST(WallsInOnePlace, PatchGivesItsSolidAngleHoweverTheSceneIsWritten) {
+  const double a = 0.002, h = 0.002, solid_angle = 4 * std::atan(a * a / (h * std::sqrt(2 * a * a + h * h)));
+  const double expected = 5e-4 * 5e-4 * solid_angle * (exitance(hot_K) - exitance(cold_K));
+  const Move stay = [](const Vec3& p) { return p; };
+  const Move turned = [](const Vec3& p) { return Vec3{p.z, p.x, p.y} + Vec3{1, 2, -3}; };
+  const Move tilted = [](const Vec3& p) { return Vec3{0.8 * p.x - 0.6 * p.y, 0.6 * p.x + 0.8 * p.y, p.z}; };
+  const Move large = [](const Vec3& p) { return 10.0 * p; };
+  const auto as_polygons = [&](const Move& move, double scale, bool backwards) {
+    return Written{polygons_text(move, cold_K, backwards) + polygon("patch", moved(patch, move), hot_K),
+                   move(above), 5e-4 * scale};
+  };
+  std::vector<Corners> vessel;
+  for (const auto& wall : box_walls(room)) vessel.push_back(wall.vertices);
+  const std::vector<std::pair<std::string, Written>> ways = {
+      {"on the box", {box_text(cold_K) + polygon("patch", patch, hot_K)}},
+      {"as STL", {box_text(cold_K) + mesh("patch", hot_K), above, 5e-4, {{"patch.stl", stl({patch})}}}},
+      {"on polygons", as_polygons(stay, 1, false)},
+      {"on polygons, backwards", as_polygons(stay, 1, true)},
+      {"turned and moved", as_polygons(turned, 1, false)},
+      {"tilted", as_polygons(tilted, 1, false)},
+      {"ten times as large", as_polygons(large, 10, false)},
+      {"on an STL vessel",
+       {mesh("vessel", cold_K) + polygon("patch", patch, hot_K), above, 5e-4, {{"vessel.stl", stl(vessel)}}}},
+      {"on an STL vessel in a box",
+       {box_text(700) + mesh("vessel", cold_K) + polygon("patch", patch, hot_K),
+        above,
+        5e-4,
+        {{"vessel.stl", stl(vessel)}}}},
+      {"twice", {box_text(cold_K) + polygon("patch", patch, 700) + polygon("again", patch, hot_K)}},
+      {"in two halves",
+       {box_text(cold_K) +
+        polygon("left", {patch[0], {0.005, 0.003, 0}, {0.005, 0.007, 0}, patch[3]}, hot_K) +
+        polygon("right", {{0.005, 0.003, 0}, patch[1], patch[2], {0.005, 0.007, 0}}, hot_K)}},
+  };
+  for (const auto& [name, scene] : ways)
+    for (const auto& [source, rays] : sources) {
+      if (source == "lines" && name.find("STL vessel") != std::string::npos) continue;  // no planar walls
+      SCOPED_TRACE(name + ", " + source);
+      const double scale = scene.radius / 5e-4;
+      // a sixth of the rays of the sphere meet the patch: three standard errors and more of each source
+      EXPECT_NEAR(heat(scene, source, rays), scale * scale * expected, 0.04 * scale * scale * expected);
+    }
+}
+
+TEST(WallsInOnePlace, VesselOfTheSizeOfTheBoxIsTheVessel) {
+  std::vector<Corners> vessel;
+  for (const auto& wall : box_walls(room)) vessel.push_back(wall.vertices);
+  const Written scene{box_text(cold_K) + mesh("vessel", hot_K), above, 5e-4, {{"vessel.stl", stl(vessel)}}};
+  const double expected = 4 * pi * 5e-4 * 5e-4 * (exitance(hot_K) - exitance(cold_K));
+  EXPECT_NEAR(heat(scene, "paths", 50000), expected, 1e-9 * expected);
+  EXPECT_NEAR(heat(scene, "embree", 2000), expected, 1e-9 * expected);
+}
+
+/// A hot plate in the middle of a cold room, 4 mm square, and the sphere before its one or its other side.
+TEST(WallsInOnePlace, PlateOfTwoSidesRadiatesFromBoth) {
+  const Corners plate{
+      {0.003, 0.003, 0.005}, {0.007, 0.003, 0.005}, {0.007, 0.007, 0.005}, {0.003, 0.007, 0.005}};
+  const double a = 0.002, h = 0.002, solid_angle = 4 * std::atan(a * a / (h * std::sqrt(2 * a * a + h * h)));
+  const double expected = 5e-4 * 5e-4 * solid_angle * (exitance(hot_K) - exitance(cold_K));
+  std::string both = polygon("plate", plate, hot_K) + "two_sided = true\n";
+  const std::vector<std::pair<std::string, Written>> ways = {
+      {"two polygons", {polygon("up", plate, hot_K) + polygon("down", reversed(plate), hot_K)}},
+      {"two_sided", {both}},
+      {"one STL", {mesh("sheet", hot_K), above, 5e-4, {{"sheet.stl", stl({plate, reversed(plate)})}}}},
+      {"one STL, two_sided",
+       {mesh("sheet", hot_K, "two_sided = true\n"), above, 5e-4, {{"sheet.stl", stl({plate})}}}},
+  };
+  for (const auto& [name, scene] : ways)
+    for (const double z : {0.003, 0.007})
+      for (const std::string source : {"paths", "embree"}) {
+        SCOPED_TRACE(fmt::format("{}, {}, z = {}", name, source, z));
+        Written placed = scene;
+        placed.walls = box_text(cold_K) + scene.walls;
+        placed.centre.z = z;
+        EXPECT_NEAR(heat(placed, source, source == "paths" ? 30000 : 20000), expected, 0.04 * expected);
+      }
+}
+
+TEST(WallsInOnePlace, PlateOfOneSideSeenFromBehindIsRefusedByEverySource) {
+  const Corners plate{
+      {0.003, 0.003, 0.005}, {0.007, 0.003, 0.005}, {0.007, 0.007, 0.005}, {0.003, 0.007, 0.005}};
+  for (const std::string source : {"paths", "embree"}) {
+    Written scene{box_text(cold_K) + polygon("plate", plate, hot_K), {0.005, 0.005, 0.003}};
+    try {
+      heat(scene, source, 1000);
+      ADD_FAILURE() << source << " took it";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("plate"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("two_sided"), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(WallsInOnePlace, WallsThatDifferInContactAreRefusedByName) {
+  auto walls = box_walls(room);
+  std::vector<Wall> all(walls.begin(), walls.end());
+  Wall heater{.name = "heater", .vertices = patch, .contact = false};
+  all.push_back(heater);
+  try {
+    cover_walls(all);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("heater"), std::string::npos) << text;
+    EXPECT_NE(text.find("z_min"), std::string::npos) << text;
+  }
+}
+
+double total_area(const std::vector<Wall>& walls) {
+  double sum = 0;
+  for (const auto& wall : walls) sum += area(wall);
+  return sum;
+}
+
+double enclosed(const std::vector<Wall>& walls) {
+  Facets facets(0);
+  for (const auto& wall : walls) facets.add(wall, 0, {}, 1);
+  return facets.enclosed_volume({}).value_or(0);
+}
+
+Wall closed_box(const Box& box, bool outward) {
+  Wall wall{.name = "body"};
+  std::vector<WallFace> faces;
+  for (auto& side : box_walls(box)) {
+    if (outward) flip(side);
+    faces.push_back(make_face(side.vertices));
+  }
+  set_faces(wall, faces);
+  return wall;
+}
+
+TEST(WallsInOnePlace, BodyOnTheFloorHidesTheFloorAndItsOwnBottom) {
+  auto walls = box_walls(room);
+  std::vector<Wall> all(walls.begin(), walls.end());
+  all.push_back(closed_box({{0.004, 0.005, 0}, {0.006, 0.007, 0.003}}, true));
+  const double whole = total_area(all);
+  cover_walls(all);
+  EXPECT_NEAR(total_area(all), whole - 2 * 4e-6, 1e-15);
+  EXPECT_NEAR(enclosed(all), 1e-6 - 12e-9, 1e-18);
+}
+
+TEST(WallsInOnePlace, SharedEdgesAreOneEdge) {
+  // A patch over a corner of the floor, and one over the seam of two walls' edge: pieces and walls have the same edges.
+  auto walls = box_walls(room);
+  std::vector<Wall> all(walls.begin(), walls.end());
+  all.push_back({.name = "a", .vertices = {{0, 0, 0}, {0.004, 0, 0}, {0.004, 0.003, 0}, {0, 0.003, 0}}});
+  all.push_back({.name = "b",
+                 .vertices = {{0.002, 0.001, 0}, {0.009, 0.001, 0}, {0.009, 0.002, 0}, {0.002, 0.002, 0}}});
+  cover_walls(all);
+  EXPECT_NEAR(total_area(all), 6e-4, 1e-15);
+  std::map<std::array<double, 6>, int> balance;
+  for (const auto& wall : all)
+    for (const auto& face : faces_of(wall))
+      for (std::size_t k = 0; k < face.vertices.size(); ++k) {
+        const Vec3 &p = face.vertices[k], &q = face.vertices[(k + 1) % face.vertices.size()];
+        ++balance[{p.x, p.y, p.z, q.x, q.y, q.z}];
+        --balance[{q.x, q.y, q.z, p.x, p.y, p.z}];
+      }
+  for (const auto& [edge, count] : balance) EXPECT_EQ(count, 0);
+}
+
+/// Conductances to walls of a sphere of radius 1 mm that touches them by 10 micrometres, over that of one floor.
+std::pair<double, double> conducted(std::vector<Wall> walls, const Vec3& centre) {
+  Bed bed;
+  Material m;
+  m.conductivity_W_mK = 1, m.youngs_modulus_Pa = 5e6, m.real_youngs_modulus_Pa = 5e10, m.poisson_ratio = 0.3;
+  bed.materials = {m};
+  for (auto& wall : walls) wall.role = WallRole::isothermal;
+  bed.walls = std::move(walls);
+  bed.box = room;
+  bed.add(centre, {}, 1e-3, 300);
+  ConductionSettings settings;
+  settings.gas = GasLens{};
+  double solid = 0, gas = 0;
+  for (const auto& g : conductances(bed, near_pairs(bed, lens_cutoff_gap_m(settings, 1e-3)), settings).walls)
+    solid += g.solid_W_K, gas += g.gas_W_K;
+  return {solid, gas};
+}
+
+TEST(WallsInOnePlace, HeatPassesThroughEveryTouchedFaceAndOnceThroughASeam) {
+  const double in = 1e-3 - 1e-5;
+  auto box = box_walls(room);
+  const std::vector<Wall> six(box.begin(), box.end());
+  const auto [solid, gas] = conducted(six, {0.005, 0.005, in});
+  ASSERT_GT(solid, 0);
+  const Wall vessel = closed_box(room, false);
+  for (const auto& [name, walls] : {std::pair{"box", six}, std::pair{"mesh", std::vector{vessel}}}) {
+    SCOPED_TRACE(name);
+    const auto edge = conducted(walls, {0.005, in, in}), corner = conducted(walls, {in, in, in});
+    EXPECT_NEAR(edge.first, 2 * solid, 1e-9 * solid);
+    EXPECT_NEAR(edge.second, 2 * gas, 1e-9 * gas);
+    EXPECT_NEAR(corner.first, 3 * solid, 1e-9 * solid);
+    EXPECT_NEAR(corner.second, 3 * gas, 1e-9 * gas);
+  }
+  // A floor of two and of three polygons, with a T where their edges meet, and of two lying in each other.
+  const Wall left{.name = "left", .vertices = {{0, 0, 0}, {0.005, 0, 0}, {0.005, 0.01, 0}, {0, 0.01, 0}}};
+  const Wall right{.name = "right",
+                   .vertices = {{0.005, 0, 0}, {0.01, 0, 0}, {0.01, 0.01, 0}, {0.005, 0.01, 0}}};
+  const Wall low{.name = "low",
+                 .vertices = {{0.005, 0, 0}, {0.01, 0, 0}, {0.01, 0.005, 0}, {0.005, 0.005, 0}}};
+  const Wall high{.name = "high",
+                  .vertices = {{0.005, 0.005, 0}, {0.01, 0.005, 0}, {0.01, 0.01, 0}, {0.005, 0.01, 0}}};
+  std::vector<Wall> patched = six;
+  patched.push_back({.name = "patch", .vertices = patch});
+  cover_walls(patched);
+  for (const auto& floor : {std::vector{left, right}, std::vector{left, low, high}, patched})
+    for (const Vec3& at :
+         {Vec3{0.005, 0.005, in}, {0.005, 0.0043, in}, {0.0050004, 0.0049998, in}, {0.003, 0.004, in}}) {
+      const auto seam = conducted(floor, at);
+      EXPECT_NEAR(seam.first, solid, 1e-6 * solid);
+      EXPECT_NEAR(seam.second, gas, 1e-6 * gas);
+    }
+}
+
+/// Heat passes to the side of a plate that faces the particle.
+TEST(WallsInOnePlace, EachSideOfAPlateConductsToItsOwnSide) {
+  const Wall up{.name = "up", .vertices = patch};
+  Wall down{.name = "down", .vertices = reversed(patch)};
+  Bed bed;
+  bed.materials.emplace_back();
+  bed.walls = {up, down};
+  bed.box = room;
+  bed.add({0.005, 0.005, 0.0009}, {}, 1e-3, 300);
+  bed.add({0.005, 0.005, -0.0009}, {}, 1e-3, 300);
+  const auto near = near_pairs(bed, 0);
+  ASSERT_EQ(near.walls.size(), 2u);
+  EXPECT_EQ(near.walls[0].wall, 0);
+  EXPECT_EQ(near.walls[1].wall, 1);
+}
+
+/// A sphere that comes to rest: how deep it lies in its floor, m.
+double static_overlap(const std::vector<Wall>& walls, const Vec3& centre) {
+  Bed bed;
+  Material m;
+  m.density_kg_m3 = 2500, m.youngs_modulus_Pa = 5e6, m.poisson_ratio = 0.3, m.restitution = 0.3;
+  bed.materials = {m};
+  bed.walls = walls;
+  bed.box = room;
+  bed.add(centre, {}, 1e-3, 300);
+  make_native_engine(bed, {0, 0, -9.81}, 1e-5, 1)->advance(bed, 0.3);
+  return 1e-3 - bed.position_m[0].z;
+}
+
+TEST(WallsInOnePlace, ContactCountsOnce) {
+  auto box = box_walls(room);
+  std::vector<Wall> walls(box.begin(), box.end());
+  const Vec3 start{0.005, 0.005, 1e-3};
+  const double bare = static_overlap(walls, start);
+  // Hertz: F = 4/3 E* sqrt(R) d^1.5, both of the one material
+  const double modulus = 5e6 / (2 * (1 - 0.09)), weight = 2500 * 4.0 / 3 * pi * 1e-9 * 9.81;
+  EXPECT_NEAR(bare, std::pow(weight / (4.0 / 3 * modulus * std::sqrt(1e-3)), 2.0 / 3), 1e-3 * bare);
+  std::vector<Wall> laid = walls;
+  laid.push_back({.name = "patch", .vertices = patch});
+  std::vector<Wall> twice = laid;  // as an engine may meet it
+  cover_walls(laid);
+  Wall down{.name = "down", .vertices = reversed(patch)};
+  std::vector<Wall> plate{{.name = "up", .vertices = patch}, down};
+  EXPECT_NEAR(static_overlap(laid, start), bare, 1e-9 * bare);
+  EXPECT_NEAR(static_overlap(laid, {0.003, 0.005, 1e-3}), bare, 1e-9 * bare)
+      << "over the border of the patch";
+  EXPECT_NEAR(static_overlap(twice, start), bare, 1e-9 * bare);
+  EXPECT_NEAR(static_overlap(plate, start), bare, 1e-9 * bare);
+}
+
+}  // namespace
+}  // namespace granrad
