@@ -127,6 +127,7 @@ class GeometryReader {
     wall.name = table.string({"name", "of the wall, in results"});
     wall.vertices = table.vec3_list(
         {"vertices_m", "corners in order, counter-clockwise seen from the particles"}, {.unit = "m"}, 3);
+    const bool turned = table.boolean({"flip", "turn the side that radiates"}, false);
     if (wall.vertices.size() < 3) {
       wall.vertices.clear();
       return wall;
@@ -135,7 +136,7 @@ class GeometryReader {
       table.problem("vertices_m", fault);
       wall.vertices.clear();
     }
-    if (table.boolean({"flip", "turn the side that radiates"}, false)) flip(wall);
+    if (turned) flip(wall);
     return wall;
   }
 
@@ -188,6 +189,11 @@ class GeometryReader {
     read_properties(table, properties, all_chosen);
     const bool two_sided =
         table.boolean({"two_sided", "both sides radiate (a thin plate in the bed)"}, false);
+    if (!mesh.empty() && walls.empty()) {  // no file was read: its solids' keys are known all the same
+      Wall unread{.name = mesh};
+      TomlTable solid = solid_table(table, mesh, unread);
+      if (!solid.present()) read_properties(solid, unread, true);
+    }
     for (auto& wall : walls) {
       Wall shaped = properties;
       shaped.name = wall.name;
@@ -197,12 +203,12 @@ class GeometryReader {
       if (!mesh.empty())
         if (TomlTable solid = solid_table(table, mesh, wall); solid.present())
           read_properties(solid, wall, true);
-      if (two_sided) make_two_sided(wall);
       const auto same = [&](const Wall& other) { return other.name == wall.name; };
       if (std::any_of(scene_.walls.begin(), scene_.walls.end(), same))
         table.problem("name", fmt::format("another wall is called {}; names must differ", wall.name));
       if (wall.vertices.empty()) continue;
       refuse_moving_across(table, wall);
+      if (two_sided) make_two_sided(wall);
       scene_.walls.push_back(std::move(wall));
       line_.push_back(table.line());
     }
