@@ -143,11 +143,11 @@ void clear_spheres(Enclosure& enclosure, double tolerance) {
   }
 }
 
-/// 0 where polygons do not tell: a mesh, or a region beyond the walls they close.
+/// 0 where planar walls do not tell: a mesh, or a region beyond the walls they close.
 double region_solid_fraction(const Bed& bed, const Enclosure& enclosure, const Box& region) {
   Facets facets(0);
   for (std::size_t w = 0; w < enclosure.walls.size(); ++w) {
-    if (!enclosure.walls[w].is_polygon()) return 0;
+    if (!plane_of(enclosure.walls[w])) return 0;
     facets.add(enclosure.walls[w], static_cast<std::int32_t>(w), {}, 1);
   }
   const double least = facets.enclosed_volume(enclosure.periodic).value_or(bed.box.volume());

@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "dem/bed/wall_shape.h"
+
 namespace granrad {
 
 namespace {
@@ -40,10 +42,8 @@ double area_inside(std::vector<Vec3> polygon, const Box& box) {
 }  // namespace
 
 double area_inside(const Wall& wall, const Box& box) {
-  if (wall.is_polygon()) return area_inside(wall.vertices, box);
   double sum = 0;
-  for (const auto& t : wall.triangles)
-    sum += area_inside({wall.vertices[t[0]], wall.vertices[t[1]], wall.vertices[t[2]]}, box);
+  for (const auto& face : faces_of(wall)) sum += area_inside(face.vertices, box);
   return sum;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "dem/bed/wall_shape.h"
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
 #include "dem/bed/solid_fraction.h"
@@ -31,11 +32,11 @@ Box bounds(const Enclosure& enclosure) {
 bool is_convex(const Enclosure& enclosure, const Box& box) {
   const double tolerance = 1e-6 * norm(box.size());
   for (const Wall& wall : enclosure.walls) {
-    if (!wall.is_polygon()) return false;
-    const Vec3 normal = polygon_normal(wall);
+    const auto plane = plane_of(wall);
+    if (!plane) return false;
     for (const Wall& other : enclosure.walls)
       for (const Vec3& v : other.vertices)
-        if (dot(normal, v - wall.vertices[0]) < -tolerance) return false;
+        if (plane->height(v) < -tolerance) return false;
   }
   return enclosure.walls.size() >= 4;
 }
@@ -134,7 +135,7 @@ void SolidFractionField::share_out(const Enclosure& enclosure, std::vector<doubl
 /// Volume of each cell inside the walls, by 27 points.
 std::vector<double> SolidFractionField::free_parts(const Enclosure& enclosure) const {
   std::vector<Vec3> normal;
-  for (const Wall& wall : enclosure.walls) normal.push_back(polygon_normal(wall));
+  for (const Wall& wall : enclosure.walls) normal.push_back(plane_of(wall)->normal);
   const auto inside = [&](const Vec3& p) {
     for (std::size_t w = 0; w < normal.size(); ++w)
       if (dot(normal[w], p - enclosure.walls[w].vertices[0]) < 0) return false;

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "dem/base/error.h"
+#include "dem/bed/wall_shape.h"
 #include "dem/packing/packing.h"
 #include "fit/correlation/correlation_source.h"
 #include "fit/correlation/unobstructed_pair.h"
@@ -181,9 +182,9 @@ void Checker::check_walls(const CorrelationRow& row, const Enclosure& bed) {
   std::size_t pairs = 0, beyond = 0;
   double worst = 0, possible = 0;
   for (const auto& wall : bed.walls) {
-    const Vec3 normal = polygon_normal(wall);
+    const Vec3 normal = plane_of(wall)->normal;
     for (std::size_t i = 0; i < bed.sphere_count(); ++i, ++pairs) {
-      const double exact = exact_sphere_polygon(bed.centre_m[i], wall);
+      const double exact = exact_sphere_wall(bed.centre_m[i], wall);
       const double h_over_d = dot(bed.centre_m[i] - wall.vertices[0], normal) / (2 * bed.radius_m[i]);
       if (wall_distance(table_.pw_distance, h_over_d) >= table_.pw_cutoff) continue;
       const double raw = raw_pw(table_, row, h_over_d, exact);
