@@ -9,6 +9,7 @@
 
 #include "coupling/simulation/simulation.h"
 #include "dem/bed/near_pairs.h"
+#include "dem/bed/solid_fraction.h"
 #include "tests/temporary_folder.h"
 
 namespace granrad {
