@@ -15,6 +15,17 @@ struct RadiativeState {
   std::vector<double> emissive_power_W_m2;  ///< sigma T^4
   std::vector<double> emissivity;           ///< [0, 1]; 0: re-radiates what meets it, 1: black
   std::vector<char> excluded;               ///< walls that are dropped before closure
+  /// What the temperature of each particle will make of its heat until the next update: k = eps A s dt / (m c), s the
+  /// slope of sigma T^4; 0 for walls, empty when not known. Sources that sample give particles their due by it.
+  std::vector<double> relaxation{};
+  /// Whether the emission of the end of the interval is meant, sigma T^4 linearised: E' = E + k Q / (eps A). With
+  /// f = 1 / (1 + k) the heats are then those of a surface that emits and keeps the part f of what a grey one would,
+  /// and sends the rest of what it absorbs out again at once, from all its surface alike.
+  bool implicit = false;
+  /// Standard error of the wall heat that is wanted of a source which chooses its own effort, W; 0: a first look.
+  double wanted_error_W = 0;
+
+  double kept_share(std::size_t surface) const { return implicit ? 1 / (1 + relaxation[surface]) : 1; }
 
   /// The next surface. Adiabatic walls have emissivity 0, open walls and the surroundings 1.
   void add(double temperature_K, double surface_emissivity, WallRole role = WallRole::isothermal) {

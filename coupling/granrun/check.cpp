@@ -141,9 +141,10 @@ void print_limits(const Simulation& simulation) {
   fmt::print("  heat step                   {}   conduction allows {} for the bed at time 0\n",
              seconds(plan.tick_s), seconds(simulation.conduction_limit_s()));
   if (plan.ticks_per_radiation > 0)
-    fmt::print("  radiation update            {}   largest allowed {}; following the motion asks {}\n",
-               seconds(plan.tick_s * static_cast<double>(plan.ticks_per_radiation)),
-               seconds(limits.radiation_s), seconds(limits.motion_s));
+    fmt::print(
+        "  radiation update            {}   second order up to {}, beyond implicit; following the motion asks {}\n",
+        seconds(plan.tick_s * static_cast<double>(plan.ticks_per_radiation)), seconds(limits.radiation_s),
+        seconds(limits.motion_s));
   if (std::isfinite(limits.dem_s)) fmt::print("  {} DEM steps per heat step\n", plan.steps_per_tick);
   fmt::print("  {} heat steps in {}{}\n", plan.end_tick, seconds(plan.time_s(plan.end_tick)),
              plan.cuts(plan.end_tick) ? ", the last one cut short" : "");

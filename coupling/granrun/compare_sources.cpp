@@ -66,7 +66,7 @@ SourceTrack heat_frozen_bed(const Case& c, const Bed& bed, const RadiationSettin
   Case frozen = c;
   frozen.flow.engine = EngineKind::none;
   frozen.flow.end_time_s = times_s.back();
-  const double every_s = c.heat.radiation.every_s;
+  const double every_s = radiation_interval_s(c, step_limits(c, bed));
   frozen.heat.radiation = radiation;
   frozen.heat.radiation.every_s = every_s;
   frozen.heat.output = {every_s, every_s};

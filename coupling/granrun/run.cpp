@@ -69,6 +69,21 @@ void begin(Simulation& simulation, const Case& c, const std::filesystem::path& w
     say(options, "note: " + note);
 }
 
+/// What long radiation intervals cost in accuracy.
+void remark_on_implicit_radiation(const Simulation& simulation, const RunOptions& options) {
+  const auto& totals = simulation.heat().radiation();
+  if (totals.implicit_updates == 0) return;
+  say(options,
+      fmt::format("note: {} of {} radiation updates were longer than 0.1 of the radiative time constant and "
+                  "taken implicitly, to first order; radiation.every_s = \"auto\" follows the time constant",
+                  totals.implicit_updates, totals.updates));
+  if (totals.limited_share > 0)
+    say(options,
+        fmt::format("note: up to {:.2g} % of the heats of an update were noise beyond every temperature and "
+                    "moved back; more rays make it less",
+                    100 * totals.limited_share));
+}
+
 std::string progress_detail(const Simulation& simulation, const HistoryRow& row) {
   std::string text = fmt::format("t = {:.4g} s  N = {}", simulation.bed().time_s, simulation.bed().size());
   if (row["mean_temperature_K"] > 0) text += fmt::format("  T = {:.1f} K", row["mean_temperature_K"]);
@@ -119,6 +134,7 @@ int follow(Simulation& simulation, const Case& c, const CaseFolder& folder, cons
     }
   }
   progress.finish();
+  remark_on_implicit_radiation(simulation, options);
   if (const auto threads = simulation.flow_threads(); threads.most > 1)
     say(options, fmt::format("threads {} of {} for the flow ({} particles)", threads.used, threads.most,
                              simulation.bed().size()));

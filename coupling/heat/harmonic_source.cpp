@@ -78,6 +78,10 @@ RadiativeHeat HarmonicSource::net_heat(const Enclosure& enclosure, const Radiati
       static_cast<std::ptrdiff_t>(state.excluded.size()))
     throw InputError(
         advised("radiation.order > 0 (a wall is excluded)", "make it adiabatic, or use order = 0"));
+  if (state.implicit)
+    throw InputError(
+        advised("radiation.order > 0 (radiation.every_s is beyond 0.1 of the radiative time constant)",
+                "shorten radiation.every_s, or use order = 0 or source = \"paths\""));
   const auto gives = [&](std::size_t s) { return s >= enclosure.sphere_count() && state.radiates(s); };
   std::vector<std::vector<double>> heats(replicates_.size());
   in_parallel(static_cast<int>(replicates_.size()), options_.threads, [&](int r) {

@@ -11,11 +11,11 @@
 
 namespace granrad {
 
-namespace {
-
 double heat_capacity_J_K(const Bed& bed, std::size_t i) {
   return mass_kg(bed, i) * bed.materials[bed.material[i]].specific_heat_J_kgK;
 }
+
+namespace {
 
 /// 4 eps sigma T^3 A, W/K.
 double emission_slope(const Bed& bed, std::size_t i, double temperature_K) {
@@ -60,8 +60,8 @@ double conduction_step_limit_s(const Bed& bed, const Conductances& conductances)
   return limit;
 }
 
-double radiation_time_constant_s(const Bed& bed) {
-  double hottest = 0;
+double radiation_time_constant_s(const Bed& bed, double hottest_K) {
+  double hottest = hottest_K;
   for (double T : bed.temperature_K) hottest = std::max(hottest, T);
   for (const auto& wall : bed.walls)
     if (wall.role == WallRole::isothermal || wall.role == WallRole::open)
@@ -72,23 +72,34 @@ double radiation_time_constant_s(const Bed& bed) {
   return shortest;
 }
 
+std::vector<double> radiative_relaxation(const Bed& bed, double hottest_K, double interval_s) {
+  std::vector<double> k(bed.size());
+  for (std::size_t i = 0; i < bed.size(); ++i) {
+    const double T = bed.temperature_K[i], area = 4 * pi * bed.radius_m[i] * bed.radius_m[i];
+    const double chord = stefan_boltzmann * (hottest_K * hottest_K + T * T) * (hottest_K + T);
+    k[i] = bed.materials[bed.material[i]].emissivity * area * chord * interval_s / heat_capacity_J_K(bed, i);
+  }
+  return k;
+}
+
 HeatPaths advance_temperatures(Bed& bed, const Conductances& conductances, double dt_s) {
   const double limit = conduction_step_limit_s(bed, conductances);
   if (dt_s > limit)
-    throw NumericalError(
-        fmt::format("conduction step = {:.4g} s (dt sum(G)/(m c) beyond {}); largest allowed: {:.4g} s", dt_s,
-                    conduction_step_fraction, limit));
+    throw NumericalError(advised(
+        fmt::format("conduction step = {:.4g} s (dt sum(G)/(m c) beyond {})", dt_s, conduction_step_fraction),
+        fmt::format("the largest allowed is {:.4g} s", limit)));
   std::vector<double> heat_W(bed.size(), 0.0);
   HeatPaths received = collect_heats(bed, conductances, heat_W);
   for (std::size_t i = 0; i < bed.size(); ++i) {
     double& T = bed.temperature_K[i];
     T += dt_s * heat_W[i] / heat_capacity_J_K(bed, i);
     if (!(T > 0 && T < infinity))
-      throw NumericalError(fmt::format(
-          "temperature of particle {} = {} K after a heat step of {:.4g} s with {:.4g} W; shorten the "
-          "radiation interval (time constant {:.4g} s)",
-          bed.id[i], T, dt_s, heat_W[i],
-          heat_capacity_J_K(bed, i) / emission_slope(bed, i, std::max(1.0, bed.temperature_K[i]))));
+      throw NumericalError(advised(
+          fmt::format("temperature of particle {} = {} K after a heat step of {:.4g} s with {:.4g} W",
+                      bed.id[i], T, dt_s, heat_W[i]),
+          fmt::format(
+              "shorten the radiation interval (time constant {:.4g} s)",
+              heat_capacity_J_K(bed, i) / emission_slope(bed, i, std::max(1.0, bed.temperature_K[i])))));
   }
   received.solid *= dt_s;
   received.gas *= dt_s;

@@ -12,6 +12,9 @@ struct HeatPaths {
   double total() const { return solid + gas + radiation; }
 };
 
+/// m c of a particle, J/K.
+double heat_capacity_J_K(const Bed& bed, std::size_t i);
+
 /// A conduction step may move a particle at most this part of the way to its neighbours: dt sum(G)/(m c).
 inline constexpr double conduction_step_fraction = 0.1;
 
@@ -19,9 +22,19 @@ inline constexpr double conduction_step_fraction = 0.1;
 double conduction_step_limit_s(const Bed& bed, const Conductances& conductances);
 
 /// Shortest radiative time constant, s: m c / (4 eps sigma T^3 A) with T the hottest particle or radiating
-/// wall (isothermal or open). Heat held over an interval dt is monotone for dt below it, stable below twice
-/// that. Infinite without particles.
-double radiation_time_constant_s(const Bed& bed);
+/// wall (isothermal or open), or `hottest_K` where that is more. Heat held over an interval dt is monotone for dt below
+/// it, stable below twice that. Infinite without particles.
+double radiation_time_constant_s(const Bed& bed, double hottest_K = 0);
+
+/// Radiation intervals up to this part of radiation_time_constant_s hold the heats of the temperatures midway; longer
+/// ones use the emission of their end (RadiativeState::implicit).
+inline constexpr double explicit_radiation_fraction = 0.1;
+
+/// What each particle's temperature makes of its radiation within an interval: k = eps A s dt / (m c), with s the slope
+/// of the chord of sigma T^4 from its temperature to the hottest, s = sigma (T_h^2 + T^2)(T_h + T). sigma T^4 lies
+/// below that chord: T + Q dt / (m c) with the heat Q of emission linearised by it stays between the coldest and the
+/// hottest temperature for any dt, and tends to the right equilibrium; first order in dt.
+std::vector<double> radiative_relaxation(const Bed& bed, double hottest_K, double interval_s);
 
 /// Advances bed.temperature_K by one explicit Euler step: m c dT = dt (sum_j G_ij (T_j - T_i) + Q_i), Q_i the
 /// held bed.radiative_heat_W. The heat of a pair is one number given to both ends with opposite signs, so
@@ -33,7 +46,7 @@ HeatPaths advance_temperatures(Bed& bed, const Conductances& conductances, doubl
 /// Temperatures in the middle of the coming radiation interval, K, as the heats held so far foretell them:
 /// T_i + Q_i dt / (2 m c). A source asked for heats at these makes holding them second order in dt instead of
 /// first (error of a lone sphere after 2 s at dt = 0.01 s: 2e-7 instead of 1.1e-4), and it conserves energy
-/// as before, since it gives the heats of one set of temperatures. Stable for dt below
+/// as before, since it gives the heats of one set of temperatures. For dt up to explicit_radiation_fraction of
 /// radiation_time_constant_s.
 std::vector<double> midway_temperatures_K(const Bed& bed, double interval_s);
 

@@ -52,7 +52,7 @@ RadiativeHeat RadiositySource::net_heat(const Enclosure& enclosure, const Radiat
   for (const auto s : kept_) {
     const auto surface = static_cast<std::size_t>(s);
     power.push_back(state.emissive_power_W_m2[surface]);
-    emissivity.push_back(state.emissivity[surface]);
+    emissivity.push_back(state.kept_share(surface) * state.emissivity[surface]);
     gives.push_back(surface >= enclosure.sphere_count() && state.radiates(surface));
   }
   const RadiosityResult solved = solve_radiosity(areas_, power, emissivity);

@@ -10,7 +10,7 @@ namespace granrad {
 
 /// Exchange source by view factors and one radiosity per surface: estimate -> close -> solve.
 /// A wall of emissivity 0 (adiabatic) re-radiates with one radiosity, excluded walls are dropped before
-/// closure. While the enclosure does not change (a frozen bed) the exchange areas are estimated once. Their
+/// closure. Implicit emission of particles is exact here: an emissivity f eps. While the enclosure does not change (a frozen bed) the exchange areas are estimated once. Their
 /// random numbers are chosen by the geometry and not by the update, so that a resumed run finds the same
 /// areas. One radiosity per surface is biased in dense grey beds (+14 % wall heat at phi = 0.43, emissivity
 /// 0.4); PathSource is not.

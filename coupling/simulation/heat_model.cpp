@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/heat/heat_limits.h"
 #include "coupling/heat/heat_step.h"
 #include "coupling/simulation/radiation_source.h"
 #include "dem/base/constants.h"
@@ -19,6 +20,15 @@ double sum(const std::vector<double>& values) {
   CompensatedSum total;
   for (double value : values) total.add(value);
   return total.value();
+}
+
+double hottest_radiating_K(const Bed& bed, const Enclosure& enclosure, double surroundings_K) {
+  double hottest = surroundings_K;
+  for (const std::int32_t i : enclosure.particle) hottest = std::max(hottest, bed.temperature_K[i]);
+  for (const Wall& wall : enclosure.walls)
+    if (wall.role == WallRole::isothermal || wall.role == WallRole::open)
+      hottest = std::max(hottest, wall.temperature_K);
+  return hottest;
 }
 
 /// Where nothing says it, the walls close (check_radiation saw to it) and no ray asks.
@@ -45,16 +55,18 @@ const Conductances& HeatModel::conduct(const Bed& bed, Flow& flow) {
 }
 
 HeatModel::ParticleHeat HeatModel::draw_radiation(const Bed& bed, std::uint64_t draw) {
-  return draw_radiation(bed, bed.temperature_K, draw);
+  const Enclosure enclosure = make_enclosure(bed, case_.flow.region);
+  return draw_radiation(bed, enclosure,
+                        radiative_state(bed, bed.temperature_K, enclosure, surroundings_K(case_)), draw);
 }
 
-HeatModel::ParticleHeat HeatModel::draw_radiation(const Bed& bed, const std::vector<double>& temperature_K,
-                                                  std::uint64_t draw) {
-  const Enclosure enclosure = make_enclosure(bed, case_.flow.region);
+HeatModel::ParticleHeat HeatModel::draw_radiation(const Bed& bed, const Enclosure& enclosure,
+                                                  const RadiativeState& state, std::uint64_t draw) {
   if (!source_) source_ = make_radiation_source(case_.heat.radiation, case_.flow, threads_);
-  const RadiativeState state = radiative_state(bed, temperature_K, enclosure, surroundings_K(case_));
   ParticleHeat result;
   result.all = source_->net_heat(enclosure, state, draw);
+  if (state.implicit)
+    result.limited_share = keep_within_bounds(bed, enclosure, state, interval_s_, result.all);
   const auto to_particles = [&](const std::vector<double>& by_surface) {
     std::vector<double> by_particle(by_surface.empty() ? 0 : bed.size(), 0.0);
     for (std::size_t k = 0; k < enclosure.particle.size() && !by_surface.empty(); ++k)
@@ -70,10 +82,30 @@ HeatModel::ParticleHeat HeatModel::draw_radiation(const Bed& bed, const std::vec
   return result;
 }
 
-void HeatModel::radiate(Bed& bed) {
-  // heats of the temperatures the bed will have midway: second order in the interval, see heat_step.h
-  auto drawn = draw_radiation(bed, midway_temperatures_K(bed, case_.heat.radiation.every_s),
-                              static_cast<std::uint64_t>(radiation_.updates));
+/// The state for the coming interval. Short ones: temperatures of its middle, of second order. Long ones: the emission
+/// of its end, linearised; see heat_step.h.
+RadiativeState HeatModel::state_ahead(const Bed& bed, const Enclosure& enclosure) const {
+  const double around_K = surroundings_K(case_);
+  const double hottest_K = hottest_radiating_K(bed, enclosure, around_K);
+  const bool implicit =
+      interval_s_ > explicit_radiation_fraction * (1 + 1e-6) * radiation_time_constant_s(bed, hottest_K);
+  RadiativeState state = radiative_state(
+      bed, implicit ? bed.temperature_K : midway_temperatures_K(bed, interval_s_), enclosure, around_K);
+  const auto relaxation = radiative_relaxation(bed, hottest_K, interval_s_);
+  state.relaxation.assign(enclosure.surface_count(), 0);
+  for (std::size_t s = 0; s < enclosure.sphere_count(); ++s)
+    state.relaxation[s] = relaxation[static_cast<std::size_t>(enclosure.particle[s])];
+  state.implicit = implicit;
+  return state;
+}
+
+void HeatModel::radiate(Bed& bed, double interval_s) {
+  interval_s_ = interval_s;
+  const Enclosure enclosure = make_enclosure(bed, case_.flow.region);
+  RadiativeState state = state_ahead(bed, enclosure);
+  const auto update = static_cast<std::uint64_t>(radiation_.updates);
+  if (case_.heat.radiation.error > 0) state.wanted_error_W = wanted_error_W(bed, enclosure, state, update);
+  auto drawn = draw_radiation(bed, enclosure, state, update);
   const RadiativeHeat& heat = drawn.all;
   bed.radiative_heat_W = std::move(drawn.heat_W);
   walls_.hold_radiation(make_enclosure(bed, case_.flow.region), heat.heat_W);
@@ -83,6 +115,21 @@ void HeatModel::radiate(Bed& bed) {
   radiation_.missed_W = -sum(heat.heat_W);
   radiation_.error_squared_W2 += heat.isothermal_wall_heat_error_W * heat.isothermal_wall_heat_error_W;
   radiation_.closure_correction = std::max(radiation_.closure_correction, heat.closure_correction);
+  radiation_.absolute_heat_W += std::abs(heat.isothermal_wall_heat_W);
+  radiation_.implicit_updates += state.implicit;
+  radiation_.limited_share = std::max(radiation_.limited_share, drawn.limited_share);
+}
+
+/// So that the mean wall heat over all updates of the run has the error asked for, relative to the mean so far; at the
+/// first update relative to a first look.
+double HeatModel::wanted_error_W(const Bed& bed, const Enclosure& enclosure, const RadiativeState& state,
+                                 std::uint64_t update) {
+  double mean_W =
+      radiation_.absolute_heat_W / static_cast<double>(std::max<std::int64_t>(1, radiation_.updates));
+  if (radiation_.updates == 0)
+    mean_W = std::abs(draw_radiation(bed, enclosure, state, update).all.isothermal_wall_heat_W);
+  const double updates = std::max(1.0, case_.flow.end_time_s / interval_s_);
+  return case_.heat.radiation.error * mean_W * std::sqrt(updates);
 }
 
 void HeatModel::advance(Bed& bed, double dt_s) {
@@ -100,6 +147,9 @@ StateBlock HeatModel::save() const {
   block.reals["missed_W"] = {radiation_.missed_W};
   block.reals["error_squared_W2"] = {radiation_.error_squared_W2};
   block.reals["closure_correction"] = {radiation_.closure_correction};
+  block.reals["absolute_heat_W"] = {radiation_.absolute_heat_W};
+  block.reals["limited_share"] = {radiation_.limited_share};
+  block.integers["implicit_updates"] = {radiation_.implicit_updates};
   return block;
 }
 
@@ -110,6 +160,9 @@ void HeatModel::load(const StateBlock& radiation, const StateBlock& ledger) {
   radiation_.missed_W = saved_real(radiation, "missed_W");
   radiation_.error_squared_W2 = saved_real(radiation, "error_squared_W2");
   radiation_.closure_correction = saved_real(radiation, "closure_correction");
+  radiation_.absolute_heat_W = saved_real(radiation, "absolute_heat_W");
+  radiation_.limited_share = saved_real(radiation, "limited_share");
+  radiation_.implicit_updates = saved_integer(radiation, "implicit_updates");
   ledger_.load(ledger);
 }
 

@@ -18,9 +18,13 @@ struct RadiationTotals {
   double missed_W = 0;            ///< given by walls and got by no particle, held until the next update
   double error_squared_W2 = 0;    ///< sum over updates of the squared standard error of the wall heat
   double closure_correction = 0;  ///< largest so far
+  double absolute_heat_W = 0;     ///< sum over updates of |wall heat|
+  double limited_share =
+      0;  ///< largest share of the heats that had to be moved to keep temperatures within bounds
+  std::int64_t implicit_updates = 0;  ///< those too long for the heats of their middle
 };
 
-/// Heat of the bed: conduction and held radiation, one explicit step at a time, with its ledger. Builds only
+/// Heat of the bed: conduction and held radiation, one step at a time, with its ledger. Builds only
 /// what the scene needs: without radiation no source, without gas and contacts no pairs.
 class HeatModel {
  public:
@@ -33,13 +37,14 @@ class HeatModel {
 
   /// Conductances of the bed as it is; those of a frozen bed are kept. Empty when nothing conducts.
   const Conductances& conduct(const Bed& bed, Flow& flow);
-  /// Net radiative heat of every particle into bed.radiative_heat_W, to be held until the next update.
-  void radiate(Bed& bed);
+  /// Net radiative heat of every particle into bed.radiative_heat_W, to be held for `interval_s`.
+  void radiate(Bed& bed, double interval_s);
   /// Net radiative heat of every particle of the bed as it is, W, and its standard error (empty: not known);
   /// random numbers by `draw`. Changes nothing in the bed or the books. 0 for particles outside the region.
   struct ParticleHeat {
     std::vector<double> heat_W, standard_error_W;
-    RadiativeHeat all;  ///< by surface
+    RadiativeHeat all;         ///< by surface
+    double limited_share = 0;  ///< moved by keep_within_bounds
   };
   ParticleHeat draw_radiation(const Bed& bed, std::uint64_t draw);
   /// One heat step with what conduct and radiate found. Throws NumericalError.
@@ -55,8 +60,11 @@ class HeatModel {
   void load(const StateBlock& radiation, const StateBlock& ledger);
 
  private:
-  /// The same with particles at other temperatures.
-  ParticleHeat draw_radiation(const Bed& bed, const std::vector<double>& temperature_K, std::uint64_t draw);
+  ParticleHeat draw_radiation(const Bed& bed, const Enclosure& enclosure, const RadiativeState& state,
+                              std::uint64_t draw);
+  RadiativeState state_ahead(const Bed& bed, const Enclosure& enclosure) const;
+  double wanted_error_W(const Bed& bed, const Enclosure& enclosure, const RadiativeState& state,
+                        std::uint64_t update);
 
   const Case& case_;
   int threads_;
@@ -66,6 +74,7 @@ class HeatModel {
   EnergyLedger ledger_;
   WallHeats walls_;
   RadiationTotals radiation_;
+  double interval_s_ = 0;  ///< of the present radiation update
 };
 
 /// 1 for the particles whose centre lies in `region` (in the periodic image inside the box, as everywhere).

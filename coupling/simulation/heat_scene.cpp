@@ -14,6 +14,8 @@ namespace granrad {
 
 namespace {
 
+constexpr double default_radiation_interval_s = 0.01;
+constexpr double default_heat_error = 0.01;
 constexpr double default_walks = 10000;  // paths, per update: 1 % noise in the wall heat needs about 1300
 constexpr double default_rays_per_particle = 2000;
 constexpr double default_line_ends_per_particle = 24000;  // 500 directions; lines are far cheaper than rays
@@ -123,6 +125,28 @@ void check_table(TomlTable& table, const std::filesystem::path& file, const Scen
   }
 }
 
+/// Rays, or the error to choose them by.
+void read_effort(TomlTable& table, RadiationSettings& settings) {
+  const bool paths = settings.kind == RadiationKind::paths;
+  const auto rays = table.number_or_auto(
+      {"rays",
+       "walks per update (paths; auto: as many as error needs), rays or line ends per particle (others)",
+       "10000 (paths), 2000 (embree), 24000 (lines), 4800 (lines of order 1 to 3), 300 (traced wall rows)"},
+      {.min = paths ? 2.0 * path_batches : 1,
+       .max = 1e9,
+       .why = paths ? "walks per update" : "rays per particle"},
+      default_rays(settings.kind, settings.order), paths && table.has("error"));
+  settings.rays = rays.value_or(0);
+  const auto error = table.optional_number(
+      {"error",
+       "paths: relative standard error of the mean wall heat over the run, that rays = auto aims at"},
+      {.min = 1e-5, .max = 0.5, .why = "relative standard error"});
+  if (!rays) settings.error = error.value_or(default_heat_error);
+  if (!paths && !rays) table.problem("rays", "= \"auto\" is for source = paths; give a number");
+  if (error && rays && table.has("error"))
+    table.problem("error", "is used with source = paths and rays = \"auto\" only; leave one of them out");
+}
+
 RadiationSettings read_radiation(TomlTable table, const Scene& scene, const std::string& fallback_source) {
   RadiationSettings settings;
   const auto chosen = table.choice(
@@ -141,15 +165,14 @@ RadiationSettings read_radiation(TomlTable table, const Scene& scene, const std:
   settings.order = static_cast<int>(table.integer(
       {"order", "of the radiosity over each sphere, with lines: 0 uniform, 1 to 3 spherical harmonics"}, 0, 3,
       0));
-  settings.rays = table.number(
-      {"rays", "walks per update (paths), rays or line ends per particle (others)",
-       "10000 (paths), 2000 (embree), 24000 (lines), 4800 (lines of order 1 to 3), 300 (traced wall rows)"},
-      {.min = paths ? 2.0 * path_batches : 1,
-       .max = 1e9,
-       .why = paths ? "walks per update" : "rays per particle"},
-      default_rays(settings.kind, settings.order));
-  settings.every_s = table.number({"every_s", "time between updates of the radiation"},
-                                  {.unit = "s", .min = 0, .min_exclusive = true}, settings.every_s);
+  read_effort(table, settings);
+  settings.every_s =
+      table
+          .number_or_auto(
+              {"every_s",
+               "time between updates of the radiation; auto: by motion and the radiative time constant"},
+              {.unit = "s", .min = 0, .min_exclusive = true}, default_radiation_interval_s)
+          .value_or(0);
   settings.closure =
       table.choice(
           {"closure",

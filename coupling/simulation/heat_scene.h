@@ -21,8 +21,10 @@ struct RadiationSettings {
   RadiationKind kind = RadiationKind::none;
   std::filesystem::path table;  ///< correlation only
   bool traced_walls = false;    ///< correlation only: rows of the walls by rays, not by the table
-  double rays = 0;              ///< paths: walks per update; embree, lines, traced walls: rays per particle
-  double every_s = 0.01;
+  double rays =
+      0;  ///< paths: walks per update, 0: as many as `error` needs; embree, lines, traced walls: rays per particle
+  double error = 0;    ///< paths with rays chosen: relative standard error of the mean wall heat over the run
+  double every_s = 0;  ///< 0: chosen (see radiation_interval_s)
   Closure closure = Closure::reciprocal;
   int order = 0;  ///< lines only: of the spherical harmonics of each sphere's radiosity; 0: one radiosity
   std::uint64_t seed = 1;

@@ -172,6 +172,9 @@ std::string describe(const RadiationSettings& settings) {
     case RadiationKind::none:
       return "none";
     case RadiationKind::paths:
+      if (settings.rays == 0)
+        return fmt::format("paths, walks chosen for {:g} % error of the mean wall heat",
+                           100 * settings.error);
       return fmt::format("paths, {:.0f} walks per update", settings.rays);
     case RadiationKind::embree:
       return fmt::format("view factors by Embree, {:.0f} rays per particle, {}", settings.rays, closure);

@@ -114,7 +114,7 @@ void Simulation::advance() {
   }
   if (plan_.radiation_at(tick_)) {
     Stopwatch watch(seconds_.radiation);
-    heat_.radiate(bed_);
+    heat_.radiate(bed_, static_cast<double>(plan_.ticks_per_radiation) * plan_.tick_s);
   }
   Stopwatch watch(seconds_.conduction);
   const ThreadsOfFlow threads(flow_);

@@ -11,7 +11,6 @@ namespace granrad {
 
 namespace {
 
-constexpr double radiation_fraction = 0.1;   // forward Euler, first order: 0.1 of the time constant
 constexpr double normal_deviates = 4;        // of the transverse velocity, both partners
 constexpr double smallest_speed_m_s = 1e-3;  // a bed at rest still settles
 
@@ -49,10 +48,14 @@ double smallest_radius_m(const Scene& scene, const Bed& bed) {
 
 /// The bed, or one particle of the scene where the bed is still empty.
 double radiation_limit_s(const Scene& scene, const Bed& bed) {
-  if (bed.size() > 0) return radiation_fraction * radiation_time_constant_s(bed);
+  // what is to come counts too: the feed's particles may be hotter than the bed
+  if (bed.size() > 0)
+    return explicit_radiation_fraction *
+           radiation_time_constant_s(
+               bed, scene.feed.kind == FeedSettings::Kind::none ? 0 : scene.particle_temperature_K);
   Bed lone = bed;
   lone.add(scene.box.min, {}, scene.particle_diameter_m / 2, scene.particle_temperature_K);
-  return radiation_fraction * radiation_time_constant_s(lone);
+  return explicit_radiation_fraction * radiation_time_constant_s(lone);
 }
 
 double largest_speed_m_s(const Scene& scene, const Bed& bed) {
@@ -62,6 +65,14 @@ double largest_speed_m_s(const Scene& scene, const Bed& bed) {
 }
 
 }  // namespace
+
+double radiation_interval_s(const Case& c, const StepLimits& limits) {
+  constexpr double part_of_a_diameter = 0.5;
+  if (c.heat.radiation.every_s > 0) return c.heat.radiation.every_s;
+  const double row = c.heat.output.every_s;
+  const double longest = std::min({row, limits.radiation_s, part_of_a_diameter * limits.motion_s});
+  return row / std::ceil(row / longest * (1 - 1e-9));
+}
 
 StepLimits step_limits(const Case& c, const Bed& bed) {
   const Scene& scene = c.flow;

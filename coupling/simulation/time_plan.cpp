@@ -25,16 +25,31 @@ struct Interval {
   double seconds;
 };
 
+std::int64_t largest_divisor(std::int64_t number, std::int64_t at_most) {
+  for (std::int64_t d = std::min(number, std::max<std::int64_t>(at_most, 1)); d > 1; --d)
+    if (number % d == 0) return d;
+  return 1;
+}
+
+/// An interval that was chosen and not given becomes a whole number of the DEM steps that were given.
+double fitted_radiation_interval_s(const Case& c, const StepLimits& limits) {
+  const double seconds = radiation_interval_s(c, limits), step = c.flow.step_s;
+  if (c.heat.radiation.every_s > 0 || !computes_forces(c.flow.engine) || !(step > 0)) return seconds;
+  const auto row = std::llround(c.heat.output.every_s / step);
+  return step *
+         static_cast<double>(largest_divisor(row, static_cast<std::int64_t>(seconds / step * (1 + 1e-9))));
+}
+
 /// Everything that comes at intervals.
 struct Intervals {
   std::optional<Interval> radiation;
   Interval row, frame;
 
-  explicit Intervals(const Case& c)
+  Intervals(const Case& c, const StepLimits& limits)
       : row{"output.every_s", c.heat.output.every_s},
         frame{"output.frames_every_s", c.heat.output.frames_every_s} {
     if (c.heat.radiation.kind != RadiationKind::none)
-      radiation = {"radiation.every_s", c.heat.radiation.every_s};
+      radiation = {"radiation.every_s", fitted_radiation_interval_s(c, limits)};
   }
   double shortest_s() const {
     return std::min({radiation ? radiation->seconds : infinity, row.seconds, frame.seconds});
@@ -43,9 +58,9 @@ struct Intervals {
 
 /// What the scene asks of a plan: a case whose scene asks for something else goes on with another one.
 std::vector<double> asked_of_plan(const Case& c) {
-  const Intervals every(c);
+  const bool radiates = c.heat.radiation.kind != RadiationKind::none;
   return {c.flow.step_s, static_cast<double>(c.heat.conduction_every_steps),
-          every.radiation ? every.radiation->seconds : 0, every.row.seconds, every.frame.seconds};
+          radiates ? c.heat.radiation.every_s : 0, c.heat.output.every_s, c.heat.output.frames_every_s};
 }
 
 /// How many `unit` fit in `seconds`; 0 with a problem when not a whole number.
@@ -59,12 +74,6 @@ std::int64_t whole(const Interval& interval, double unit, const char* of_what,
                                          interval.seconds, of_what, unit),
                              fmt::format("try {:.9g} or {:.9g}", below * unit, (below + 1) * unit)));
   return 0;
-}
-
-std::int64_t largest_divisor(std::int64_t number, std::int64_t at_most) {
-  for (std::int64_t d = std::min(number, std::max<std::int64_t>(at_most, 1)); d > 1; --d)
-    if (number % d == 0) return d;
-  return 1;
 }
 
 /// Splits `seconds` into equal steps no longer than `limit`, their number divisible by a number near
@@ -94,7 +103,7 @@ void refuse_endless(std::vector<std::string>& problems, const char* what, double
 /// The DEM step, or the heat step of a frozen bed.
 double choose_step(const Case& c, const StepLimits& limits, double conduction_limit_s,
                    std::vector<std::string>& problems) {
-  const double base = Intervals(c).shortest_s();
+  const double base = Intervals(c, limits).shortest_s();
   if (!computes_forces(c.flow.engine)) {
     // contacts of a recording are not known ahead: room for four times those of its first snapshot
     const double room = c.flow.engine == EngineKind::replay ? 0.25 : 1;
@@ -135,14 +144,11 @@ void end_at(TimePlan& plan, double end_time_s) {
 
 TimePlan make_time_plan(const Case& c, const StepLimits& limits, double conduction_limit_s, const Bed& bed) {
   std::vector<std::string> problems;
-  if (c.heat.radiation.kind != RadiationKind::none)
-    refuse_beyond(problems, "radiation.every_s", c.heat.radiation.every_s, limits.radiation_s,
-                  "0.1 of the radiative time constant of the smallest particle at the hottest temperature");
   const bool frozen = !computes_forces(c.flow.engine);  // steps are those of the heat alone
   TimePlan plan;
   plan.asked = asked_of_plan(c);
   plan.step_s = choose_step(c, limits, conduction_limit_s, problems);
-  const Intervals every(c);
+  const Intervals every(c, limits);
   const auto steps_of = [&](const Interval& interval) {
     return whole(interval, plan.step_s, frozen ? "heat steps" : "DEM steps", problems);
   };

@@ -76,6 +76,9 @@ class TomlTable {
   double number(const Key& key, const NumberRule& rule);                   ///< required
   double number(const Key& key, const NumberRule& rule, double fallback);  ///< optional
   std::optional<double> optional_number(const Key& key, const NumberRule& rule);
+  /// A number, or "auto": then empty. `automatic`: whether that is the default, else `fallback`.
+  std::optional<double> number_or_auto(const Key& key, const NumberRule& rule, double fallback,
+                                       bool automatic = false);
   std::int64_t integer(const Key& key, std::int64_t min, std::int64_t max,
                        std::optional<std::int64_t> fallback = {});
   bool boolean(const Key& key, std::optional<bool> fallback = {});

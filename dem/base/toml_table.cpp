@@ -83,6 +83,17 @@ double TomlTable::number(const Key& key, const NumberRule& rule, double fallback
   return node ? node_->checked_number(*node, node_->path_of(key.name), rule) : fallback;
 }
 
+std::optional<double> TomlTable::number_or_auto(const Key& key, const NumberRule& rule, double fallback,
+                                                bool automatic) {
+  KeyUse& use = node_->use(key, KeyKind::number, rule);
+  use.choices = {"auto"};
+  use.fallback = automatic ? quoted_text("auto") : number_text(fallback, rule, key);
+  const toml::node* node = node_->get(key.name);
+  if (!node) return automatic ? std::nullopt : std::optional(fallback);
+  if (const auto* word = node->as_string(); word && word->get() == "auto") return std::nullopt;
+  return node_->checked_number(*node, node_->path_of(key.name), rule);
+}
+
 std::int64_t TomlTable::integer(const Key& key, std::int64_t min, std::int64_t max,
                                 std::optional<std::int64_t> fallback) {
   const bool bounded = max < std::numeric_limits<std::int32_t>::max();

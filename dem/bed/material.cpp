@@ -35,8 +35,11 @@ const std::vector<MaterialNumber>& material_numbers() {
        &Material::rolling_friction,
        {.min = 0},
        0.0},
-      {"emissivity", "emissivity of particles, grey and diffuse", &Material::emissivity,
-       fraction("grey diffuse surface"), 1.0},
+      {"emissivity",
+       "emissivity of particles, grey and diffuse",
+       &Material::emissivity,
+       {.min = 0, .max = 1, .why = "grey diffuse surface"},
+       1.0},
   };
   return numbers;
 }

@@ -19,7 +19,7 @@ struct Material {
   double restitution = 0;       ///< e in (0, 1]
   double friction = 0;          ///< sliding friction coefficient mu
   double rolling_friction = 0;  ///< constant directional torque coefficient mu_r
-  double emissivity = 1;        ///< grey, diffuse, in (0, 1]
+  double emissivity = 1;        ///< grey, diffuse, in [0, 1]
 };
 
 /// One number of a material: its key in a scene and its name in a frame, what it must be, and what it is when a

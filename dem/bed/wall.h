@@ -11,7 +11,7 @@ namespace granrad {
 
 /// What a wall does for radiation. A scene must choose (design: walls have roles).
 enum class WallRole {
-  isothermal,  ///< fixed temperature, emissivity in (0, 1]
+  isothermal,  ///< fixed temperature, emissivity in [0, 1]
   adiabatic,   ///< re-radiates what it receives; no net heat
   open,        ///< exchanges as a black surface at `temperature_K` (the surroundings)
   excluded,    ///< blocks rays, but is dropped before closure (the paper's four unheated walls)

@@ -95,7 +95,7 @@ class GeometryReader {
     } else {
       wall.emissivity = table.number(
           {"emissivity", "of the wall, grey and diffuse", "emissivity of the material"},
-          {.min = 0, .max = 1, .min_exclusive = true, .why = "grey diffuse surface"},
+          {.min = 0, .max = 1, .why = "grey diffuse surface"},
           inherits && before != WallRole::open ? wall.emissivity : scene_.materials[0].emissivity);
     }
     wall.contact =

@@ -11,7 +11,8 @@ namespace granrad {
 namespace {
 
 bool all_black(const RadiativeState& state) {
-  return std::all_of(state.emissivity.begin(), state.emissivity.end(), [](double e) { return e == 1; }) &&
+  return !state.implicit &&
+         std::all_of(state.emissivity.begin(), state.emissivity.end(), [](double e) { return e == 1; }) &&
          std::none_of(state.excluded.begin(), state.excluded.end(), [](char dropped) { return dropped; });
 }
 

@@ -5,7 +5,11 @@
 
 namespace granrad {
 
-/// Exchange source by traced paths: trace_paths on a tracer that is rebuilt only when the enclosure changes.
+inline constexpr std::int64_t first_look_walks = 4096, most_chosen_walks = 100000000;
+
+/// Exchange source by traced paths: trace_paths on a tracer that is rebuilt only when the enclosure changes. With
+/// options.walks = 0 it chooses its walks: a first look of first_look_walks, and where its error of the wall heat is above
+/// RadiativeState::wanted_error_W, as many anew as bring it down. The choice depends on nothing before this update.
 class PathSource : public ExchangeSource {
  public:
   explicit PathSource(const PathOptions& options) : options_(options) {}
@@ -13,6 +17,8 @@ class PathSource : public ExchangeSource {
                          std::uint64_t update) override;
 
  private:
+  RadiativeHeat trace_enough_paths(const RadiativeState& state, std::uint64_t update) const;
+
   PathOptions options_;
   Enclosure enclosure_;  ///< the one `tracer_` was built for
   std::unique_ptr<EmbreeTracer> tracer_;

@@ -10,8 +10,16 @@ namespace granrad {
 PathSurfaces::PathSurfaces(const Enclosure& enclosure, const RadiativeState& state)
     : absorptivity_(state.emissivity),
       power_W_m2_(state.emissive_power_W_m2),
+      relaxation_(state.relaxation),
       drops_(state.excluded),
-      first_wall_(static_cast<std::int32_t>(enclosure.sphere_count())) {}
+      first_wall_(static_cast<std::int32_t>(enclosure.sphere_count())) {
+  if (!state.implicit) return;
+  for (std::size_t s = 0; s < absorptivity_.size(); ++s) {
+    const double grey = absorptivity_[s], kept = state.kept_share(s) * grey;
+    spread_share_.push_back(kept < grey ? (grey - kept) / (1 - kept) : 0);
+    absorptivity_[s] = kept;
+  }
+}
 
 double PathSurfaces::smallest_absorptivity() const {
   double smallest = 1;
@@ -29,7 +37,7 @@ double PathSurfaces::power_range_W_m2() const {
 
 PathStarts::PathStarts(const Enclosure& enclosure, const PathSurfaces& surfaces, std::int64_t walks,
                        double wall_share)
-    : walks_per_m2_(enclosure.surface_count(), 0.0) {
+    : walks_(walks), walks_per_m2_(enclosure.surface_count(), 0.0) {
   const auto area = surface_areas(enclosure);
   const auto emitters = static_cast<std::int32_t>(enclosure.open_surface());
   double total_m2[2] = {0, 0};  // of particles, of walls
@@ -48,6 +56,38 @@ PathStarts::PathStarts(const Enclosure& enclosure, const PathSurfaces& surfaces,
     }
     cumulative_.push_back(sum);
   }
+  raise_to_needs(surfaces, area);
+}
+
+void PathStarts::raise_to_needs(const PathSurfaces& surfaces, const std::vector<double>& area) {
+  std::vector<double> starts(cumulative_.size());
+  double sum = 0;
+  bool raised = false;
+  for (std::size_t s = 0; s < starts.size(); ++s) {
+    const auto number = static_cast<std::int32_t>(s);
+    starts[s] = walks_per_m2_[s] * surfaces.absorptivity(number) * area[s];
+    const double k = surfaces.relaxation(number), needed = walks_per_relaxation * k / (1 + k);
+    if (surfaces.radiates(number) && starts[s] < needed) {
+      starts[s] = needed;
+      raised = true;
+    }
+    sum += starts[s];
+  }
+  if (!raised) return;
+  walks_ = static_cast<std::int64_t>(std::ceil(sum));
+  const double stretch = static_cast<double>(walks_) / sum;
+  double before = 0;
+  for (std::size_t s = 0; s < starts.size(); ++s) {
+    before += starts[s];
+    cumulative_[s] = before;
+    if (starts[s] > 0)
+      walks_per_m2_[s] =
+          stretch * starts[s] / (surfaces.absorptivity(static_cast<std::int32_t>(s)) * area[s]);
+  }
+}
+
+double PathStarts::most_walks_per_m2() const {
+  return *std::max_element(walks_per_m2_.begin(), walks_per_m2_.end());
 }
 
 std::int32_t PathStarts::surface_at(double u) const {

@@ -17,24 +17,35 @@ class PathSurfaces {
   bool is_wall(std::int32_t s) const { return s >= first_wall_; }  ///< the surroundings too
   bool drops(std::int32_t s) const { return drops_[s]; }           ///< excluded walls
   bool radiates(std::int32_t s) const { return absorptivity_[s] > 0 && !drops_[s]; }
-  double absorptivity(std::int32_t s) const { return absorptivity_[s]; }
+  double absorptivity(std::int32_t s) const { return absorptivity_[s]; }  ///< of what is kept, f eps
+  /// Part of what is not kept that leaves again from all of the surface alike: (1 - f) eps / (1 - f eps).
+  double spread_share(std::int32_t s) const { return spread_share_.empty() ? 0 : spread_share_[s]; }
+  /// RadiativeState::relaxation; 0 when not known.
+  double relaxation(std::int32_t s) const { return relaxation_.empty() ? 0 : relaxation_[s]; }
   double power_W_m2(std::int32_t s) const { return power_W_m2_[s]; }  ///< sigma T^4
 
   double smallest_absorptivity() const;  ///< of the radiating surfaces
   double power_range_W_m2() const;       ///< largest minus smallest power of the radiating surfaces
 
  private:
-  std::vector<double> absorptivity_, power_W_m2_;
+  std::vector<double> absorptivity_, power_W_m2_, spread_share_, relaxation_;
   std::vector<char> drops_;
   std::int32_t first_wall_;
 };
 
-/// Where walks start: a share on the walls, the rest on the particles, on each kind in proportion to
-/// emissivity times area.
+/// Walks from a particle that would come to its equilibrium with all it sees until the next update. One walk then
+/// moves its temperature by at most 1 % of the way to that of the other end.
+inline constexpr double walks_per_relaxation = 100;
+
+/// Where walks start: a share on the walls, the rest on the particles, on each kind in proportion to emissivity times
+/// area. Particles that this gives fewer than walks_per_relaxation k / (1 + k) get that many, and the walks become
+/// more: a small particle, whose temperature follows its heat at once, is sampled as often as it needs. Both ends of a
+/// pair are weighted by their own density of walks, so that any choice of starts is unbiased.
 class PathStarts {
  public:
   PathStarts(const Enclosure& enclosure, const PathSurfaces& surfaces, std::int64_t walks, double wall_share);
 
+  std::int64_t walks() const { return walks_; }  ///< those asked for, or more
   /// sum eps_i A_i over the surfaces that emit, m^2. 0: no walk can start.
   double emission_area_m2() const { return emission_area_m2_; }
   /// Surface at the fraction u in [0, 1) of all starts.
@@ -43,8 +54,12 @@ class PathStarts {
   double area_per_walk_m2(std::int32_t i, std::int32_t j) const {
     return 1 / (walks_per_m2_[i] + walks_per_m2_[j]);
   }
+  double most_walks_per_m2() const;
 
  private:
+  void raise_to_needs(const PathSurfaces& surfaces, const std::vector<double>& area);
+
+  std::int64_t walks_;
   std::vector<double> cumulative_;    ///< per surface but the surroundings
   std::vector<double> walks_per_m2_;  ///< 1/g
   double emission_area_m2_ = 0;

@@ -6,105 +6,69 @@
 #include <cmath>
 
 #include "dem/base/error.h"
-#include "dem/base/random.h"
-#include "raytrace/paths/path_starts.h"
-#include "raytrace/rays/emission.h"
+#include "raytrace/paths/path_walker.h"
 
 namespace granrad {
 
 namespace {
 
-/// Heats of one batch, in quanta.
-struct Tally {
-  std::vector<std::int64_t> heat;
-  std::int64_t segments = 0, lost = 0;
+/// Work that a thread takes at a time: pieces of batches, so that any number of threads has something to do.
+constexpr std::int64_t walks_of_a_piece = 64;
+
+struct Piece {
+  int batch;
+  std::int64_t first, last;  ///< walks of the batch
 };
 
-class Walker {
- public:
-  Walker(const Enclosure& enclosure, const EmbreeTracer& tracer, const RadiativeState& state,
-         const PathOptions& options, std::uint64_t update)
-      : tracer_(tracer),
-        surfaces_(enclosure, state),
-        starts_(enclosure, surfaces_, options.walks, options.wall_share),
-        emitter_(enclosure),
-        seed_(options.seed ^ 0x7061746873ull),
-        update_(update),
-        weighted_(surfaces_.smallest_absorptivity() < options.weighted_below) {
-    // A power of two: heats in quanta become doubles exactly, and their sum as doubles is 0 exactly.
-    const double bound = starts_.emission_area_m2() * surfaces_.power_range_W_m2();
-    quantum_W_ = bound > 0 ? std::exp2(std::ceil(std::log2(bound)) - 50) : 1;
+std::int64_t first_walk(std::int64_t walks, int batch) {
+  return walks * batch / path_batches;
+}
+
+std::vector<Piece> pieces_of(std::int64_t walks) {
+  std::vector<Piece> pieces;
+  for (int b = 0; b < path_batches; ++b) {
+    const std::int64_t count = first_walk(walks, b + 1) - first_walk(walks, b);
+    for (std::int64_t k = 0; k < count; k += walks_of_a_piece)
+      pieces.push_back({b, k, std::min(count, k + walks_of_a_piece)});
   }
+  return pieces;
+}
 
-  const PathSurfaces& surfaces() const { return surfaces_; }
-  bool nothing_emits() const { return starts_.emission_area_m2() == 0; }
-  double quantum_W() const { return quantum_W_; }
-
-  Tally run_batch(int batch, std::int64_t first, std::int64_t count) const {
-    Tally tally;
-    tally.heat.assign(surfaces_.count(), 0);
-    const StartLattice lattice(seed_, update_, batch, count);
-    for (std::int64_t k = 0; k < count; ++k) walk(lattice, k, static_cast<std::uint64_t>(first + k), tally);
-    return tally;
-  }
-
- private:
-  static constexpr int event_bits = 20;  ///< a walk that meets 2^20 surfaces is lost
-  static constexpr double roulette_below = 0.2;
-
-  void walk(const StartLattice& lattice, std::int64_t k, std::uint64_t number, Tally& tally) const {
-    const std::int32_t start = starts_.surface_at(lattice.position(k));
-    const auto [u0, u1, u2, u3] = lattice.uniforms(k);
-    Emission ray = emitter_.emit(start, u0, u1, u2, u3);
-    std::int32_t from = start;
-    double weight = 1;
-    for (std::uint64_t event = 0; event < (1ull << event_bits); ++event) {
-      const Hit hit = tracer_.first_hit(ray.origin_m, ray.direction, from, ray.normal);
-      ++tally.segments;
-      from = hit.surface;
-      if (from < 0) break;
-      if (surfaces_.drops(from)) return;
-      const double absorbed = surfaces_.absorptivity(from);
-      if (absorbed == 1) return exchange(start, from, weight, tally);
-      const auto bits = random_bits(seed_, update_, number << event_bits | event);
-      const auto uniform = [&](int word) { return (bits[word] + 0.5) * 0x1p-32; };
-      if (weighted_ && absorbed > 0) {
-        exchange(start, from, weight * absorbed, tally);
-        weight *= 1 - absorbed;
-        if (weight < roulette_below) {
-          if (uniform(2) < 0.5) return;
-          weight *= 2;
-        }
-      } else if (uniform(2) < absorbed) {
-        return exchange(start, from, weight, tally);
-      }
-      ray = {hit.position_m, cosine_direction(hit.normal, uniform(0), uniform(1)), hit.normal};
+/// Tallies of the batches. Pieces come in their order, so that a thread leaves each batch once.
+std::vector<PathTally> run_batches(const PathWalker& walker, int threads) {
+  const auto surfaces = static_cast<std::size_t>(walker.surfaces().count());
+  std::vector<PathTally> batches(path_batches, PathTally(surfaces));
+  const std::int64_t walks = walker.walks();
+  const auto pieces = pieces_of(walks);
+#pragma omp parallel num_threads(threads)
+  {
+    PathTally own(surfaces);
+    int batch = 0;
+    const auto hand_over = [&](int next) {
+      if (next == batch) return;
+#pragma omp critical
+      batches[static_cast<std::size_t>(batch)].add(own);
+      own.clear();
+      batch = next;
+    };
+#pragma omp for schedule(dynamic, 1) nowait
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+      const Piece& piece = pieces[p];
+      hand_over(piece.batch);
+      const std::int64_t first = first_walk(walks, piece.batch);
+      const auto lattice = walker.lattice(piece.batch, first_walk(walks, piece.batch + 1) - first);
+      for (std::int64_t k = piece.first; k < piece.last; ++k)
+        walker.walk(lattice, k, static_cast<std::uint64_t>(first + k), own);
     }
-    ++tally.lost;
+    hand_over(-1);
   }
-
-  void exchange(std::int32_t start, std::int32_t end, double weight, Tally& tally) const {
-    if (start == end) return;
-    const double heat = weight * starts_.area_per_walk_m2(start, end) *
-                        (surfaces_.power_W_m2(start) - surfaces_.power_W_m2(end));
-    const auto quanta = std::llround(heat / quantum_W_);
-    tally.heat[end] += quanta;
-    tally.heat[start] -= quanta;
-  }
-
-  const EmbreeTracer& tracer_;
-  PathSurfaces surfaces_;
-  PathStarts starts_;
-  Emitter emitter_;
-  std::uint64_t seed_, update_;
-  bool weighted_;
-  double quantum_W_;
-};
+  return batches;
+}
 
 /// Sum over the batches and the standard error of that sum, in quanta.
 template <class Value>
-std::pair<std::int64_t, double> total_and_error(Value value_of_batch) {
-  std::int64_t total = 0;
+std::pair<double, double> total_and_error(Value value_of_batch) {
+  Quanta total = 0;
   for (int b = 0; b < path_batches; ++b) total += value_of_batch(b);
   const double mean = static_cast<double>(total) / path_batches;
   double squares = 0;
@@ -112,23 +76,23 @@ std::pair<std::int64_t, double> total_and_error(Value value_of_batch) {
     const double d = static_cast<double>(value_of_batch(b)) - mean;
     squares += d * d;
   }
-  return {total, std::sqrt(squares * path_batches / (path_batches - 1))};
+  return {static_cast<double>(total), std::sqrt(squares * path_batches / (path_batches - 1))};
 }
 
-RadiativeHeat assemble(const Walker& walker, const std::vector<Tally>& batches) {
+RadiativeHeat assemble(const PathWalker& walker, const std::vector<PathTally>& batches) {
   const PathSurfaces& surfaces = walker.surfaces();
   const double quantum = walker.quantum_W();
   RadiativeHeat result;
-  std::vector<std::int64_t> given(path_batches, 0);
+  std::vector<Quanta> given(path_batches, 0);
   for (std::int32_t s = 0; s < surfaces.count(); ++s) {
     const auto [total, error] = total_and_error([&](int b) { return batches[b].heat[s]; });
-    result.heat_W.push_back(static_cast<double>(total) * quantum);
+    result.heat_W.push_back(total * quantum);
     result.standard_error_W.push_back(error * quantum);
     if (surfaces.is_wall(s))
       for (int b = 0; b < path_batches; ++b) given[b] -= batches[b].heat[s];
   }
   const auto [total, error] = total_and_error([&](int b) { return given[b]; });
-  result.isothermal_wall_heat_W = static_cast<double>(total) * quantum;
+  result.isothermal_wall_heat_W = total * quantum;
   result.isothermal_wall_heat_error_W = error * quantum;
   for (const auto& batch : batches) result.rays += batch.segments;
   return result;
@@ -140,25 +104,18 @@ RadiativeHeat trace_paths(const Enclosure& enclosure, const EmbreeTracer& tracer
                           const PathOptions& options, std::uint64_t update) {
   if (options.walks < 2 * path_batches)
     throw InputError(
-        fmt::format("radiation.rays = {} (paths need at least {} walks an update to know their "
-                    "error); 10000 is usual",
-                    options.walks, 2 * path_batches));
-  const Walker walker(enclosure, tracer, state, options, update);
-  std::vector<Tally> batches(path_batches);
-  const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
-  for (int b = 0; b < path_batches; ++b) {
-    const std::int64_t first = options.walks * b / path_batches,
-                       last = options.walks * (b + 1) / path_batches;
-    batches[b] = walker.run_batch(b, first, walker.nothing_emits() ? 0 : last - first);
-  }
+        advised(fmt::format("radiation.rays = {} (paths need at least {} walks an update to know their "
+                            "error)",
+                            options.walks, 2 * path_batches),
+                "10000 is usual"));
+  const PathWalker walker(enclosure, tracer, state, options, update);
+  const auto batches = run_batches(walker, options.threads > 0 ? options.threads : omp_get_max_threads());
   std::int64_t lost = 0;
   for (const auto& batch : batches) lost += batch.lost;
-  if (static_cast<double>(lost) > 1e-3 * static_cast<double>(options.walks))
+  if (static_cast<double>(lost) > 1e-3 * static_cast<double>(walker.walks()))
     throw NumericalError(
-        fmt::format("paths: {} of {} walks leaked or did not end (walls that do not close, or "
-                    "emissivities near 0)",
-                    lost, options.walks));
+        advised(fmt::format("paths: {} of {} walks leaked or did not end", lost, walker.walks()),
+                "close the walls, and let some surface absorb"));
   return assemble(walker, batches);
 }
 

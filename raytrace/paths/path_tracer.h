@@ -8,7 +8,8 @@
 namespace granrad {
 
 struct PathOptions {
-  std::int64_t walks = 10000;  ///< per update, >= 2 path_batches
+  std::int64_t walks =
+      10000;  ///< per update, >= 2 path_batches; more where particles need it (see PathStarts)
   std::uint64_t seed = 1;
   /// Share of the walks that start on isothermal and open walls, the rest on particles. At 0 or 1 the
   /// exchange within the kind that starts none is left out. 0.75: a sixth of the cost of even starts for the
@@ -31,13 +32,20 @@ inline constexpr int path_batches = 16;
 /// whichever end they started from: the best unbiased merge of both directions (reciprocity: eps_i A_i D_ij =
 /// eps_j A_j D_ji).
 ///
-/// Adiabatic walls re-emit diffusely where they are hit. Open walls and the surroundings are black. A walk
-/// that meets an excluded wall ends and exchanges nothing, as if that wall had the temperature of the start.
-/// Heats are summed as integers of a power-of-two quantum: they sum to 0 exactly, an isothermal enclosure
-/// gets exactly 0, and any number of threads gives the same bits. Starts are stratified: a shifted lattice
-/// over (surface, point, direction) in each batch.
+/// Surfaces of emissivity 0 re-emit diffusely where they are hit. A walk that meets an excluded wall ends and
+/// exchanges nothing, as if that wall had the temperature of the start. With implicit emission (RadiativeState) a
+/// particle keeps the part f of what it absorbs and sends the rest out again from a point drawn anew on its surface.
 ///
-/// Throws NumericalError when more than 1e-3 of the walks leak or do not end.
+/// Dim surfaces: the work of a walk is bounded. After most_surfaces_of_a_walk what it still carries goes to the surfaces
+/// of its second half in proportion to what they absorbed, as if light were mixed by then. That is exact as the
+/// emissivities go to 0; where the hot and the cold side are more than about ten free paths apart and emissivities are
+/// below about 0.01, it keeps heat nearer to where it came from.
+///
+/// Heats are summed as integers of a power-of-two quantum: their differences cancel exactly, an isothermal enclosure
+/// gets exactly 0, and any number of threads gives the same bits. Starts are stratified: a shifted lattice over
+/// (surface, point, direction) in each batch.
+///
+/// Throws NumericalError when the heats of single walks and their sum are too far apart for the sums, or more than 1e-3 of the walks leak or do not end.
 RadiativeHeat trace_paths(const Enclosure& enclosure, const EmbreeTracer& tracer, const RadiativeState& state,
                           const PathOptions& options, std::uint64_t update);
 

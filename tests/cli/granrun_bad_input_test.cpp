@@ -47,7 +47,6 @@ const BadScene bad_scenes[] = {
     {"closure for paths", "rays = 500", "closure = \"row_sum\"", "closure"},
     {"order for paths", "rays = 500", "order = 2", "order"},
     {"too few walks", "rays = 500", "rays = 3", "rays"},
-    {"radiation step beyond its limit", "every_s = 0.002", "every_s = 0.4", "radiation.every_s"},
     {"output not on radiation steps", "every_s = 0.004", "every_s = 0.0040055", "output.every_s"},
     {"heat steps that do not fit", "[radiation]", "[conduction]\nevery_steps = 70\n[radiation]",
      "every_steps"},

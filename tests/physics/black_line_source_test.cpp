@@ -1,7 +1,7 @@
 // Requirement: between black surfaces a moving bed is heated along the lines themselves, by the same heats as through
 // exchange areas, with a true error of the wall heat; anything grey or re-radiating goes through exchange areas.
-// Planted, seen to fail: the emissive powers of the last update (HeatsOfTheMatrix); errors of the surfaces added as if
-// independent, 1.7 times too large (ErrorOfTheWallHeatIsTrue); adiabatic walls taken as black (GreyGoesToTheMatrix).
+// Planted, seen to fail: the emissive powers of the last update (HeatsOfTheMatrix); the scatter of one replicate for that of
+// their mean (ErrorOfTheWallHeatIsTrue); adiabatic walls taken as black (GreyGoesToTheMatrix).
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -195,7 +195,7 @@ TEST(Scene, BadScenesAreRefusedWithTheirPlace) {
       {replaced(plug_scene, "density_kg_m3 = 3984", "density_kg_m3 = '3984 mm'"),
        {"f.toml:4:17: material.density_kg_m3 = \"3984 mm\" ('mm' cannot be converted to kg/m3)"}},
       {replaced(plug_scene, "friction = 0.4", "friction = 0.4\nemissivity = 1.4"),
-       {"f.toml:12:14: material.emissivity = 1.4 (must be in (0, 1]: grey diffuse surface)"}},
+       {"f.toml:12:14: material.emissivity = 1.4 (must be in [0, 1]: grey diffuse surface)"}},
       {replaced(plug_scene, "diameter_m = \"0.8 mm\"\n", ""),
        {"f.toml:12:1: particles.diameter_m is missing: a number > 0 m"}},
       {replaced(plug_scene, "temperature_K = 300", "temperature_K = 0"),
