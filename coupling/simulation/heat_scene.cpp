@@ -21,18 +21,20 @@ constexpr double default_rays_per_particle = 2000;
 constexpr double default_line_ends_per_particle = 24000;  // 500 directions; lines are far cheaper than rays
 
 constexpr double default_rays_of_walls = 300;  // correlation with traced walls: of the walls, per particle
+constexpr double default_wall_rays_per_particle = 200;  // shading: sent by the walls
 constexpr double default_line_ends_for_moments = 4800;  // 100 directions in each replicate
 
 double default_rays(RadiationKind kind, int order) {
   if (kind == RadiationKind::paths) return default_walks;
   if (kind == RadiationKind::correlation) return default_rays_of_walls;
   if (order > 0) return default_line_ends_for_moments;
+  if (kind == RadiationKind::shading) return default_wall_rays_per_particle;
   return kind == RadiationKind::lines ? default_line_ends_per_particle : default_rays_per_particle;
 }
 
 RadiationKind kind_from(const std::string& name) {
-  for (auto kind :
-       {RadiationKind::paths, RadiationKind::embree, RadiationKind::lines, RadiationKind::correlation})
+  for (auto kind : {RadiationKind::paths, RadiationKind::embree, RadiationKind::lines, RadiationKind::shading,
+                    RadiationKind::correlation})
     if (name == to_string(kind)) return kind;
   return RadiationKind::none;
 }
@@ -75,7 +77,8 @@ int read_conduction_interval(TomlTable table, const Scene& scene) {
 void check_source_against_walls(TomlTable& table, RadiationKind kind, const Scene& scene) {
   const std::string name = to_string(kind);
   const bool needs_planes = kind == RadiationKind::lines || kind == RadiationKind::correlation;
-  if (kind == RadiationKind::correlation && (scene.periodic[0] || scene.periodic[1] || scene.periodic[2]))
+  if ((kind == RadiationKind::correlation || kind == RadiationKind::shading) &&
+      (scene.periodic[0] || scene.periodic[1] || scene.periodic[2]))
     table.problem("source",
                   fmt::format("= {} (the box is periodic: this source needs walls all around); choose paths, "
                               "embree or lines",
@@ -131,7 +134,7 @@ void read_effort(TomlTable& table, RadiationSettings& settings) {
   const auto rays = table.number_or_auto(
       {"rays",
        "walks per update (paths; auto: as many as error needs), rays or line ends per particle (others)",
-       "10000 (paths), 2000 (embree), 24000 (lines), 4800 (lines of order 1 to 3), 300 (traced wall rows)"},
+       "10000 (paths), 2000 (embree), 200 (shading, from the walls), 24000 (lines), 4800 (lines of order 1 to 3), 300 (traced wall rows)"},
       {.min = paths ? 2.0 * path_batches : 1,
        .max = 1e9,
        .why = paths ? "walks per update" : "rays per particle"},
@@ -151,9 +154,9 @@ RadiationSettings read_radiation(TomlTable table, const Scene& scene, const std:
   RadiationSettings settings;
   const auto chosen = table.choice(
       {"source",
-       "paths: traced in the loop, exact; embree, lines: view factors and radiosity; correlation: view factors from a table",
+       "paths: traced in the loop, exact; embree, lines, shading: view factors and radiosity; correlation: view factors from a table",
        "paths; none without [radiation]"},
-      {"none", "paths", "embree", "lines", "correlation"}, fallback_source);
+      {"none", "paths", "embree", "lines", "shading", "correlation"}, fallback_source);
   settings.kind = kind_from(chosen);
   const bool paths = settings.kind == RadiationKind::paths;
   settings.table = table.file({"table", "correlation table, for source = correlation"},
@@ -263,6 +266,8 @@ const char* to_string(RadiationKind kind) {
       return "embree";
     case RadiationKind::lines:
       return "lines";
+    case RadiationKind::shading:
+      return "shading";
     case RadiationKind::correlation:
       return "correlation";
   }

@@ -13,7 +13,7 @@
 
 namespace granrad {
 
-enum class RadiationKind { none, paths, embree, lines, correlation };
+enum class RadiationKind { none, paths, embree, lines, shading, correlation };
 const char* to_string(RadiationKind kind);
 
 /// [radiation], and each source of [validate].

@@ -17,6 +17,7 @@
 #include "raytrace/paths/path_source.h"
 #include "raytrace/rays/enclosure_check.h"
 #include "raytrace/rays/view_factors.h"
+#include "raytrace/shading/shading_exchange.h"
 
 namespace granrad {
 
@@ -52,6 +53,12 @@ LineOptions line_options(const RadiationSettings& settings, std::uint64_t update
   options.seed = settings.seed + update;
   options.threads = threads;
   return options;
+}
+
+RadiositySource::Estimate shading_estimate(const RadiationSettings& settings, int threads) {
+  return [=](const Enclosure& enclosure, std::uint64_t update) {
+    return shading_exchange_areas(enclosure, {settings.rays, settings.seed + update, threads});
+  };
 }
 
 RadiositySource::Estimate line_estimate(const RadiationSettings& settings, int threads) {
@@ -96,6 +103,8 @@ std::unique_ptr<ExchangeSource> make_radiation_source(const RadiationSettings& s
       if (settings.order > 0)
         return std::make_unique<HarmonicSource>(settings.order, line_options(settings, 0, threads));
       return line_source(settings, scene, threads);
+    case RadiationKind::shading:
+      return std::make_unique<RadiositySource>(shading_estimate(settings, threads), settings.closure);
     case RadiationKind::correlation:
       return std::make_unique<RadiositySource>(
           correlation_exchange(read_correlation(settings.table), correlation_use(settings, threads)),
@@ -151,6 +160,7 @@ std::vector<std::string> check_radiation(const RadiationSettings& settings, cons
   if (bed.size() == 0) return check.notes;
   if (settings.kind == RadiationKind::correlation)
     correlation_exchange_areas(read_correlation(settings.table), enclosure, {});
+  if (settings.kind == RadiationKind::shading) refuse_what_shading_cannot_serve(enclosure);
   if (settings.kind == RadiationKind::lines)
     sweep_exchange_areas(enclosure, {.directions = 1, .lines_per_disc = 1, .replicates = 2});
   return check.notes;
@@ -185,6 +195,9 @@ std::string describe(const RadiationSettings& settings) {
             "walls",
             settings.rays, settings.order);
       return fmt::format("view factors by global lines, {:.0f} rays per particle, {}", settings.rays,
+                         closure);
+    case RadiationKind::shading:
+      return fmt::format("explicit shading of pairs, walls by {:.0f} rays per particle, {}", settings.rays,
                          closure);
     case RadiationKind::correlation:
       return fmt::format(

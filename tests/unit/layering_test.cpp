@@ -63,6 +63,7 @@ const std::map<std::string, std::vector<std::string>> arrows = [] {
   const Folders line_pass = join({embree, {"raytrace/line_pass/"}});
   const Folders lines = join({rays, line_pass, {"raytrace/lines/"}}),
                 paths = join({rays, {"raytrace/paths/"}});
+  const Folders shading = join({rays, {"raytrace/shading/"}});
   const Folders correlation = join({rays, {"fit/correlation/"}});
   const Folders fitting = join({correlation, {"dem/page/", "fit/fitting/"}});
   const Folders heat = join({lines, {"dem/io/", "coupling/heat/"}});
@@ -70,6 +71,7 @@ const std::map<std::string, std::vector<std::string>> arrows = [] {
       join({heat,
             correlation,
             paths,
+            shading,
             engine,
             {"dem/feed/feed.h", "dem/engine_native.h", "dem/engine_liggghts.h", "dem/engine_replay.h", "coupling/simulation/"}});
   return std::map<std::string, Folders>{
@@ -90,6 +92,7 @@ const std::map<std::string, std::vector<std::string>> arrows = [] {
       {"raytrace/line_pass/", line_pass},
       {"raytrace/lines/", lines},
       {"raytrace/paths/", paths},
+      {"raytrace/shading/", shading},
       {"fit/correlation/", correlation},
       {"fit/fitting/", fitting},
       {"fit/vfgen/", join({fitting, lines, packing, io, {"fit/vfgen/"}})},

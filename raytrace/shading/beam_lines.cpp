@@ -1,0 +1,112 @@
+#include "raytrace/shading/beam_lines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "dem/base/constants.h"
+
+namespace granrad {
+
+namespace {
+
+/// Overlap of two discs of diameter 1 whose centres are `offset` apart.
+double lens_area(double offset) {
+  if (offset >= 1) return 0;
+  return 0.5 * std::acos(offset) - 0.5 * offset * std::sqrt(1 - offset * offset);
+}
+
+/// Part of a disc of diameter 1 beyond a chord at distance c from its centre.
+double segment_area(double c) {
+  return 0.25 * std::acos(2 * c) - c * std::sqrt(std::max(0.0, 0.25 - c * c));
+}
+
+/// Angles at equal steps of the cumulated distribution sin(theta) Lens(s sin(theta)).
+class AngleTable {
+ public:
+  explicit AngleTable(double s) : largest_(std::asin(std::min(1.0, 1 / s))), cumulated_(steps + 1, 0) {
+    for (int k = 0; k < steps; ++k) {
+      const double sine = std::sin((k + 0.5) / steps * largest_);
+      cumulated_[k + 1] = cumulated_[k] + sine * lens_area(s * sine);
+    }
+  }
+  double angle(double u) const {
+    const double wanted = u * cumulated_.back();
+    const auto above = std::upper_bound(cumulated_.begin() + 1, cumulated_.end() - 1, wanted);
+    const auto k = above - cumulated_.begin() - 1;
+    const double part = (wanted - cumulated_[k]) / (cumulated_[k + 1] - cumulated_[k]);
+    return (static_cast<double>(k) + part) / steps * largest_;
+  }
+
+ private:
+  static constexpr int steps = 2000;
+  double largest_;
+  std::vector<double> cumulated_;
+};
+
+/// Place across the lens of discs at 0 and `offset`, from one uniform: the area below it is u of the lens.
+double place_across(double offset, double u) {
+  const double half = offset / 2, side = u < 0.5 ? -1 : 1;
+  const double beyond = segment_area(half) * (1 - std::abs(2 * u - 1));
+  double low = half, high = 0.5;
+  for (int k = 0; k < 40; ++k) {
+    const double middle = 0.5 * (low + high);
+    (segment_area(middle) > beyond ? low : high) = middle;
+  }
+  return half + side * (low - half);
+}
+
+}  // namespace
+
+BeamLines::BeamLines() {
+  // multiples of the powers of 1/x, x^5 = x + 1: an even lattice in four dimensions
+  constexpr double step[4] = {0.8566748838545029, 0.733891856627126, 0.6287067210378086, 0.53859725722361};
+  for (int bin = 0; bin <= static_cast<int>((longest - 1) * bins_per_diameter); ++bin) {
+    const double s = 1 + (bin + 0.5) / bins_per_diameter;
+    const AngleTable angles(s);
+    Set& set = sets_.emplace_back();
+    for (std::size_t k = 0; k < count; ++k) {
+      double u[4];
+      for (int d = 0; d < 4; ++d) u[d] = std::fmod(0.5 / count + static_cast<double>(k) * step[d], 1.0);
+      const double theta = angles.angle((static_cast<double>(k) + 0.5) / count), turn = 2 * pi * u[1];
+      const double sine = std::sin(theta), cosine = std::cos(theta), offset = s * sine;
+      const double x = place_across(std::min(offset, 1.0), u[2]);
+      const double centre =
+          x > offset / 2 ? x : offset - x;  // distance from the centre of the disc that bounds it
+      const double y = (2 * u[3] - 1) * std::sqrt(std::max(0.0, 0.25 - centre * centre));
+      const double c = std::cos(turn), n = std::sin(turn);
+      set.direction_x[k] = static_cast<float>(sine * c);
+      set.direction_y[k] = static_cast<float>(sine * n);
+      set.direction_z[k] = static_cast<float>(cosine);
+      // across: towards the other disc (-cosine c, -cosine n, sine), and (-n, c, 0)
+      set.point_x[k] = static_cast<float>(-x * cosine * c - y * n);
+      set.point_y[k] = static_cast<float>(-x * cosine * n + y * c);
+      set.point_z[k] = static_cast<float>(x * sine);
+      set.end[k] = static_cast<float>(s * cosine);
+    }
+  }
+}
+
+const BeamLines::Set& BeamLines::at(double distance) const {
+  const auto bin = static_cast<std::size_t>(std::max(0.0, (distance - 1) * bins_per_diameter));
+  return sets_[std::min(bin, sets_.size() - 1)];
+}
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+__attribute__((target_clones("avx512f", "avx2", "default")))
+#endif
+void BlockedLines::add(const BeamLines::Set& lines, float x, float y, float z, float radius2) {
+  for (std::size_t k = 0; k < BeamLines::count; ++k) {
+    const float along = x * lines.direction_x[k] + y * lines.direction_y[k] + z * lines.direction_z[k];
+    const float dx = x - lines.point_x[k], dy = y - lines.point_y[k], dz = z - lines.point_z[k];
+    const float across2 = dx * dx + dy * dy + dz * dz - along * along;
+    const bool hit = (across2 < radius2) & (along > 0) & (along < lines.end[k]);
+    blocked[k] = hit ? 1.0f : blocked[k];
+  }
+}
+
+double BlockedLines::open_share() const {
+  return 1 - std::accumulate(blocked.begin(), blocked.end(), 0.0f) / static_cast<double>(BeamLines::count);
+}
+
+}  // namespace granrad

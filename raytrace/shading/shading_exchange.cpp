@@ -1,0 +1,138 @@
+#include "raytrace/shading/shading_exchange.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "dem/base/constants.h"
+#include "dem/base/error.h"
+#include "raytrace/embree/embree_tracer.h"
+#include "raytrace/exact.h"
+#include "raytrace/rays/ray_rows.h"
+#include "raytrace/shading/beam_lines.h"
+#include "raytrace/shading/sphere_shading.h"
+
+namespace granrad {
+
+namespace {
+
+/// Counts of rays that the walls send.
+HitCounts trace_walls(const Enclosure& enclosure, const ShadingOptions& options) {
+  const auto area = surface_areas(enclosure);
+  const std::size_t spheres = enclosure.sphere_count();
+  const double walls = std::accumulate(area.begin() + static_cast<std::ptrdiff_t>(spheres), area.end(), 0.0);
+  constexpr double least_rays = 1000;
+  const double all = options.rays_per_particle * static_cast<double>(std::max<std::size_t>(1, spheres));
+  std::vector<std::int64_t> rays(enclosure.surface_count(), 0);
+  for (std::size_t s = spheres; s < enclosure.open_surface(); ++s)
+    rays[s] = std::llround(std::max(least_rays, all * area[s] / walls));
+  TraceOptions trace;
+  trace.seed = options.seed;
+  trace.threads = options.threads;
+  const EmbreeTracer tracer(enclosure, options.threads);
+  return trace_rows(enclosure, area, rays, trace, [&](const EmittedRay& ray) {
+    const End end = tracer.first_end(ray.start.origin_m, ray.start.direction, ray.surface);
+    return RayEnd{end.surface, end.distance_m};
+  });
+}
+
+class Assembly {
+ public:
+  explicit Assembly(std::vector<double> area) : rows_(area.size()), area_(std::move(area)) {}
+
+  void add(std::size_t i, std::size_t j, double value, double variance) {
+    if (!(value > 0)) return;
+    rows_[i].push_back({static_cast<std::int32_t>(j), value, variance});
+    if (i != j) rows_[j].push_back({static_cast<std::int32_t>(i), value, variance});
+  }
+  double missing_m2(std::size_t i) const {
+    double sum = 0;
+    for (const auto& e : rows_[i]) sum += e.value;
+    return area_[i] - sum;
+  }
+  ExchangeAreas take() {
+    ExchangeAreas areas;
+    areas.area_m2 = std::move(area_);
+    areas.pattern.row_begin.push_back(0);
+    for (auto& row : rows_) {
+      std::sort(row.begin(), row.end(), [](const Entry& a, const Entry& b) { return a.column < b.column; });
+      for (const Entry& e : row) {
+        areas.pattern.column.push_back(e.column);
+        areas.value.push_back(e.value);
+        areas.variance.push_back(e.variance);
+      }
+      areas.pattern.row_begin.push_back(static_cast<std::int64_t>(areas.value.size()));
+    }
+    return areas;
+  }
+
+ private:
+  struct Entry {
+    std::int32_t column;
+    double value, variance;
+  };
+  std::vector<std::vector<Entry>> rows_;
+  std::vector<double> area_;
+};
+
+/// Wall rows, each pair of walls from both ends. Returns whether any ray left the walls.
+bool add_walls(const Enclosure& enclosure, const HitCounts& counts, Assembly& assembly) {
+  const ExchangeAreas one_way = one_way_estimate(counts);
+  const std::size_t spheres = enclosure.sphere_count(), open = enclosure.open_surface();
+  const std::size_t walls = open - spheres;
+  std::vector<double> between(walls * walls, 0), variance(walls * walls, 0);
+  bool anything_open = walls == 0;
+  for (std::size_t w = spheres; w < open; ++w)
+    for (auto k = one_way.pattern.row_begin[w]; k < one_way.pattern.row_begin[w + 1]; ++k) {
+      const auto j = static_cast<std::size_t>(one_way.pattern.column[k]);
+      if (j < spheres || j == open) {
+        assembly.add(w, j, one_way.value[k], one_way.variance[k]);
+        anything_open = anything_open || j == open;
+        continue;
+      }
+      const auto [a, b] = std::minmax(w, j);
+      const double part = a == b ? 1 : 0.5;
+      between[(a - spheres) * walls + b - spheres] += part * one_way.value[k];
+      variance[(a - spheres) * walls + b - spheres] += part * part * one_way.variance[k];
+    }
+  for (std::size_t a = 0; a < walls; ++a)
+    for (std::size_t b = a; b < walls; ++b)
+      assembly.add(spheres + a, spheres + b, between[a * walls + b], variance[a * walls + b]);
+  return anything_open;
+}
+
+}  // namespace
+
+void refuse_what_shading_cannot_serve(const Enclosure& enclosure) {
+  std::vector<std::string> problems;
+  const auto [low, high] = std::minmax_element(enclosure.radius_m.begin(), enclosure.radius_m.end());
+  if (!enclosure.radius_m.empty() && *high > 1.01 * *low)
+    problems.push_back(
+        advised(fmt::format("shading: radii = {:.4g} to {:.4g} m (lines between equal spheres, within 1 %)",
+                            *low, *high),
+                "choose source = paths, lines or embree"));
+  if (enclosure.periodic != std::array<bool, 3>{})
+    problems.push_back(
+        advised("shading: the box is periodic (walls are needed)", "choose source = paths, lines or embree"));
+  if (!problems.empty()) throw InputError(problems);
+}
+
+ExchangeAreas shading_exchange_areas(const Enclosure& enclosure, const ShadingOptions& options) {
+  refuse_what_shading_cannot_serve(enclosure);
+  Assembly assembly(surface_areas(enclosure));
+  for (const VisiblePair& pair : visible_pairs(enclosure, options.threads)) {
+    const double r_i = enclosure.radius_m[pair.i], r_j = enclosure.radius_m[pair.j];
+    const double full = 4 * pi * r_i * r_i * exact_two_sphere(r_i, r_j, pair.distance_m);
+    assembly.add(pair.i, pair.j, full * pair.open_share,
+                 full * full * pair.open_share * (1 - pair.open_share) / BeamLines::count);
+  }
+  const bool anything_open = add_walls(enclosure, trace_walls(enclosure, options), assembly);
+  if (anything_open)
+    for (std::size_t i = 0; i < enclosure.sphere_count(); ++i)
+      assembly.add(i, enclosure.open_surface(), assembly.missing_m2(i), 0);
+  return assembly.take();
+}
+
+}  // namespace granrad

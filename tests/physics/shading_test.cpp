@@ -1,0 +1,170 @@
+// Requirement: explicit shading gives the factors of each pair of spheres, their sums and the heats of particles as many
+// rays do, and closes with walls by rays. Planted, seen to fail: neighbours beyond the partner block too (pairs, row sums);
+// points spread evenly over the width of the lens instead of its area (ABlockerInTheMiddle).
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "coupling/heat/radiosity_source.h"
+#include "dem/base/constants.h"
+#include "dem/base/error.h"
+#include "dem/base/random.h"
+#include "raytrace/exact.h"
+#include "raytrace/rays/view_factors.h"
+#include "raytrace/shading/shading_exchange.h"
+#include "raytrace/shading/sphere_shading.h"
+#include "tests/line_cases.h"
+
+namespace granrad {
+namespace {
+
+constexpr double r = 4e-4;
+
+TEST(Shading, AFreePairIsExactAndABlockerInTheMiddleHidesWhatRaysSay) {
+  const Enclosure free = spheres_in_open_space({{0, 0, 0}, {3 * r, 0, 0}}, {r, r});
+  ASSERT_EQ(visible_pairs(free, 1).size(), 1u);
+  EXPECT_EQ(visible_pairs(free, 1)[0].open_share, 1);
+  for (const double aside : {0.6, 1.0, 1.4}) {
+    const Enclosure e = spheres_in_open_space({{0, 0, 0}, {6 * r, 0, 0}, {3 * r, aside * r, 0}}, {r, r, r});
+    TraceOptions rays;
+    rays.rays_per_particle = 200000;
+    rays.threads = 1;
+    const HitCounts counts = trace_view_factors(e, rays);
+    const auto at = [&](std::int32_t i, std::int32_t j) {
+      for (auto k = counts.pattern.row_begin[i]; k < counts.pattern.row_begin[i + 1]; ++k)
+        if (counts.pattern.column[k] == j) return static_cast<double>(counts.hits[k]);
+      return 0.0;
+    };
+    const double hits = at(0, 1) + at(1, 0), open = hits / 400000 / exact_two_sphere(r, r, 6 * r);
+    double found = 0;
+    for (const auto& pair : visible_pairs(e, 1))
+      if (pair.i == 0 && pair.j == 1) found = pair.open_share;
+    EXPECT_NEAR(found, open, 0.015 + 4 * open / std::sqrt(hits)) << aside;
+  }
+}
+
+/// rms difference of F over pairs up to 6 diameters apart, without the noise of the reference, and mean ratio of row sums.
+struct Comparison {
+  double rms, row_sums;
+};
+
+Comparison compare(double solid_fraction) {
+  const Box box{{0, 0, 0}, {0.0072, 0.0056, 0.0064}};
+  const Enclosure bed = packed(box, equal_radii(box, solid_fraction, r));
+  const auto reference = [&](std::uint64_t seed) {
+    LineOptions o;
+    o.directions = 300;
+    o.threads = 1;
+    o.seed = seed;
+    return sweep_exchange_areas(bed, o);
+  };
+  const ExchangeAreas a = reference(1), b = reference(2);
+  const auto shading = visible_pairs(bed, 1);
+  const std::size_t n = bed.sphere_count();
+  std::vector<double> x(n * n, 0);
+  for (const auto& pair : shading)
+    x[static_cast<std::size_t>(pair.i) * n + static_cast<std::size_t>(pair.j)] =
+        exact_two_sphere(r, r, pair.distance_m) * pair.open_share;
+  double products = 0, pairs = 0, sum = 0, expected = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i + 1; j < n; ++j) {
+      if (norm(bed.centre_m[j] - bed.centre_m[i]) > 12 * r) continue;
+      const double fa = value(a, i, j) / a.area_m2[i], fb = value(b, i, j) / b.area_m2[i];
+      products += (x[i * n + j] - fa) * (x[i * n + j] - fb);
+      sum += x[i * n + j];
+      expected += 0.5 * (fa + fb);
+      ++pairs;
+    }
+  return {std::sqrt(std::max(0.0, products / pairs)), sum / expected};
+}
+
+TEST(Shading, PairsAndRowSumsOfBedsAreThoseOfLines) {
+  for (const double solid_fraction : {0.07, 0.25, 0.43}) {
+    const auto found = compare(solid_fraction);
+    std::printf("solid fraction %.2f: rms of F %.2e, sums %.5f\n", solid_fraction, found.rms, found.row_sums);
+    EXPECT_LT(found.rms, 2.5e-4) << "no function of the distance beats 6.7e-4";
+    EXPECT_NEAR(found.row_sums, 1, 0.004);
+  }
+}
+
+// Heats of a black bed between hot walls, the others re-radiating: those of exact areas, particle by particle.
+TEST(Shading, HeatsOfParticlesAreThoseOfLines) {
+  const Box box{{0, 0, 0}, {0.0056, 0.004, 0.0072}};
+  const Enclosure bed = packed(box, equal_radii(box, 0.4, r));
+  RadiativeState state;
+  for (std::size_t i = 0; i < bed.sphere_count(); ++i) state.add(300, 1);
+  for (const Wall& wall : bed.walls)
+    state.add(1000, 1, wall.name[0] == 'y' ? WallRole::isothermal : WallRole::adiabatic);
+  state.add(300, 1, WallRole::open);
+  RadiositySource by_lines(
+      [](const Enclosure& e, std::uint64_t) {
+        LineOptions o;
+        o.directions = 1500;
+        o.threads = 1;
+        return sweep_exchange_areas(e, o);
+      },
+      Closure::reciprocal);
+  RadiositySource by_shading(
+      [](const Enclosure& e, std::uint64_t) {
+        return shading_exchange_areas(e, {4000, 1, 1});
+      },
+      Closure::reciprocal);
+  const auto exact = by_lines.net_heat(bed, state, 0), found = by_shading.net_heat(bed, state, 0);
+  double squares = 0, noise = 0, sum = 0;
+  for (std::size_t i = 0; i < bed.sphere_count(); ++i) {
+    squares += std::pow(found.heat_W[i] - exact.heat_W[i], 2);
+    noise += std::pow(exact.standard_error_W[i], 2);
+    sum += exact.heat_W[i];
+  }
+  const double n = static_cast<double>(bed.sphere_count()), rms = std::sqrt(squares / n) / (sum / n);
+  std::printf("rms of particle heats %.2f %% of their mean, of the reference %.2f %%\n", 100 * rms,
+              100 * std::sqrt(noise / n) / (sum / n));
+  EXPECT_LT(rms, 0.012);
+  EXPECT_NEAR(found.isothermal_wall_heat_W / exact.isothermal_wall_heat_W, 1, 0.005);
+}
+
+TEST(Shading, ClosesWithItsWallsAndDoesNotDependOnThreads) {
+  const Box box{{0, 0, 0}, {0.005, 0.004, 0.006}};
+  const Enclosure bed = packed(box, equal_radii(box, 0.4, r));
+  const auto areas = [&](int threads) { return shading_exchange_areas(bed, {500, 1, threads}); };
+  const ExchangeAreas x = areas(1);
+  EXPECT_EQ(x.value, areas(3).value);
+  for (std::size_t i = 0; i < bed.sphere_count(); ++i) {
+    double sum = 0;
+    for (auto k = x.pattern.row_begin[i]; k < x.pattern.row_begin[i + 1]; ++k) {
+      sum += x.value[k];
+      EXPECT_EQ(x.value[k], value(x, static_cast<std::size_t>(x.pattern.column[k]), i));
+    }
+    EXPECT_NEAR(sum / x.area_m2[i], 1, 0.06) << i;
+  }
+  ClosureReport report;
+  close(x, Closure::reciprocal, report);
+  EXPECT_LT(report.largest_correction, 0.06);
+}
+
+// A plate between two spheres, as a wall of two sides in an enclosure that is not convex.
+TEST(Shading, WallsHideWhatIsBehindThem) {
+  Enclosure e = spheres_in_open_space({{0.001, 0.002, 0.002}, {0.003, 0.002, 0.002}}, {r, r});
+  e = boxed(e, {{0, 0, 0}, {0.004, 0.004, 0.004}});
+  EXPECT_EQ(visible_pairs(e, 1).size(), 1u);
+  Wall plate;
+  plate.name = "plate";
+  plate.vertices = {{0.002, 0, 0}, {0.002, 0.004, 0}, {0.002, 0.004, 0.004}, {0.002, 0, 0.004}};
+  e.walls.push_back(plate);
+  std::swap(plate.vertices[1], plate.vertices[3]);
+  e.walls.push_back(plate);
+  EXPECT_EQ(visible_pairs(e, 1).size(), 0u);
+}
+
+TEST(Shading, RefusesUnequalSpheresAndPeriods) {
+  Enclosure e = spheres_in_open_space({{0, 0, 0}, {4 * r, 0, 0}}, {r, 1.5 * r});
+  EXPECT_THROW(shading_exchange_areas(e, {}), InputError);
+  e.radius_m[1] = r;
+  e.box = {{0, 0, 0}, {1, 1, 1}};
+  e.periodic[0] = true;
+  EXPECT_THROW(shading_exchange_areas(e, {}), InputError);
+}
+
+}  // namespace
+}  // namespace granrad
