@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# ./do demo | test | test-long | gates | tidy | format | docs | package | bench [trace|dem|heat|case|front] [--quick]
+# ./do demo | test | test-long | paper [--quick] | validate [--quick] | gates | tidy | format | docs | package |
+#      bench [trace|dem|heat|case|front] [--quick]
 # Each command takes a bare Debian 12 all the way: missing packages, configuration, build, run.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
@@ -9,7 +10,7 @@ build=$root/build/release
 packages=(build-essential cmake ninja-build git python3
   libembree-dev libeigen3-dev libceres-dev libhdf5-dev libgtest-dev
   libcli11-dev libtomlplusplus-dev libfmt-dev nlohmann-json3-dev
-  libpng-dev libudunits2-dev librandom123-dev libboost-math-dev zlib1g-dev libpugixml-dev)
+  libpng-dev libudunits2-dev librandom123-dev libboost-math-dev libmuparser-dev zlib1g-dev libpugixml-dev)
 
 # The engine on LIGGGHTS: optional in a build, part of the tests.
 liggghts_engine=(libliggghts-dev libopenmpi-dev)
@@ -28,7 +29,7 @@ settings=()  # of the configuration
 say() { printf '\n== %s\n' "$*"; }
 
 usage() {
-  sed -n '2,3s/^# //p' "$root/do"
+  sed -n '2,4s/^# //p' "$root/do"
   cat <<'EOF'
   demo        a plug flow of hot-walled alumina, about 1 s of flow: table, frames and a page
   fuzz [N]    N random scenes (100) against what must hold whatever they are; failures are made small and kept
@@ -41,6 +42,8 @@ usage() {
   package     a .deb of programs, library, Python, data and documents in build/package
   fuzz-files [SECONDS]
               damaged files of each kind that is read, SECONDS each (default 60): 0 findings is the aim
+  paper       every number of the paper beside ours: out/paper/paper.html (resumable; --quick: minutes)
+  validate    the validation book: docs/validation.md (resumable; --quick: what is fast)
   bench       speed against error, side by side with LIGGGHTS, LAMMPS, plain Embree and dense LU;
               case: the whole moving bed of the paper beside LIGGGHTS' flow alone;
               front: every exchange source with a ladder of rays
@@ -167,6 +170,31 @@ case ${1:-} in
   frames    $out/run.hdf.series     paraview $out/run.hdf.series
             $out/frames/*.hdf       h5py, or: $build/bin/granrun export $out --to dump   (OVITO)
 EOF
+    ;;
+  paper | validate)
+    what=$1
+    quick=()
+    [[ ${2:-} == --quick ]] && quick=(--quick)
+    set_up
+    out=$root/out/$what${quick[0]:+-quick}
+    if [[ $what == paper ]]; then
+      build granrun vfgen
+      say "the paper beside ours"
+      code=0
+      "$build/bin/granrun" study data/studies/li_2024.toml -o "$out" --book "$out/paper.md" "${quick[@]}" || code=$?
+      [[ ! -f $out/report.html ]] || cp "$out/report.html" "$out/paper.html"
+      say "page: $out/paper.html, numbers: $out/claims.csv"
+    else
+      build granrun vfgen test_analytic_extinction test_cli_granrun_measure
+      book=$root/docs/validation.md
+      ((${#quick[@]})) && book=$out/validation.md
+      say "the validation book"
+      mkdir -p "$out"
+      code=0
+      "$build/bin/granrun" study data/studies/validation.toml -o "$out" --book "$book" "${quick[@]}" || code=$?
+      say "book: $book, page: $out/report.html"
+    fi
+    exit $code
     ;;
   bench)
     shift

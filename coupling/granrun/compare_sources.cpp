@@ -45,6 +45,8 @@ SourceInstant observe(Simulation& simulation, const Case& c, int draws) {
   for (std::size_t i = 0; i < bed.size(); ++i) {
     if (!inside[i]) continue;
     const double area = 4 * pi * bed.radius_m[i] * bed.radius_m[i];
+    instant.id.push_back(bed.id[i]);
+    instant.position_m.push_back(bed.position_m[i]);
     instant.temperature_K.push_back(bed.temperature_K[i]);
     instant.flux_W_m2.push_back(heat[i] / area);
     noise.push_back(std::sqrt(variance[i]) / area);

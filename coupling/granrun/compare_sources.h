@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@ namespace granrad {
 /// A frozen bed at one instant, as one exchange source heated it. Per particle of the region.
 struct SourceInstant {
   double time_s = 0, mean_temperature_K = 0, mean_flux_W_m2 = 0;
+  std::vector<std::int64_t> id;
+  std::vector<Vec3> position_m;
   std::vector<double> temperature_K, flux_W_m2;  ///< flux received, Q / A
   double flux_noise_W_m2 = 0;                    ///< rms standard error of the particle fluxes; 0: not known
   double energy_defect = 0;

@@ -12,8 +12,9 @@
 #include "coupling/granrun/new_scene.h"
 #include "coupling/granrun/render.h"
 #include "coupling/granrun/run.h"
-#include "coupling/granrun/sweep.h"
 #include "coupling/granrun/validate.h"
+#include "coupling/measure/measure_command.h"
+#include "coupling/study/run_study.h"
 #include "dem/base/error.h"
 #include "dem/base/program.h"
 
@@ -23,9 +24,14 @@ using namespace granrad;
 
 struct Arguments {
   std::string scene, folder, format, walltime;
-  std::vector<std::string> overrides;
+  std::vector<std::string> overrides, removed;
+  std::vector<std::string> scenes;
+  std::vector<double> emissivities;
+  ValidateOptions validate;
+  StudyOptions study;
+  ConductivityCommand measure;
   RunOptions options;
-  bool quiet = false, verbose = false, list_only = false;
+  bool quiet = false, verbose = false;
 };
 
 double seconds_of(const std::string& walltime) {
@@ -61,12 +67,19 @@ void add_common(CLI::App* command, Arguments& a) {
       ->excludes(quiet);
 }
 
-void add_scene(CLI::App* command, Arguments& a) {
-  command->add_option("SCENE", a.scene, "scene file (TOML)")->required();
+void add_scene_edits(CLI::App* command, Arguments& a) {
   command->add_option("--set", a.overrides, "override a scene value, e.g. --set radiation.rays=1000")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
+  command->add_option("--unset", a.removed, "take a key out of the scene, e.g. --unset feed.mass_flow_kg_s")
+      ->type_name("KEY")
+      ->allow_extra_args(false);
   add_common(command, a);
+}
+
+void add_scene(CLI::App* command, Arguments& a) {
+  command->add_option("SCENE", a.scene, "scene file (TOML)")->required();
+  add_scene_edits(command, a);
 }
 
 void add_output(CLI::App* command, Arguments& a) {
@@ -75,6 +88,45 @@ void add_output(CLI::App* command, Arguments& a) {
 
 void add_stopping(CLI::App* command, Arguments& a) {
   command->add_option("--walltime", a.walltime, "save a checkpoint and exit 75 after HH:MM:SS");
+}
+
+void add_study_options(CLI::App* command, Arguments& a) {
+  command->add_option("STUDY", a.scene, "study file (TOML)")->required();
+  add_output(command, a);
+  add_stopping(command, a);
+  command->add_option("--jobs", a.study.jobs, "cases at the same time; default: one a core")
+      ->check(CLI::Range(1, 4096));
+  command->add_option("--case", a.study.only, "run this case alone, for clusters")->type_name("NAME");
+  command->add_flag("--list", a.study.list_only, "write jobs.txt, slurm_array.sh and Snakefile, run nothing");
+  command->add_flag("--quick", a.study.quick, "only the cases that the study marks as quick");
+  command->add_flag("--any-version", a.study.any_version,
+                    "keep what another version of granrun has finished");
+  command->add_option("--book", a.study.book, "write the claims as a book in Markdown too")
+      ->type_name("FILE.md");
+  add_common(command, a);
+}
+
+void add_conductivity(CLI::App* command, Arguments& a) {
+  command->require_subcommand(1);
+  auto* one =
+      command->add_subcommand("conductivity", "k by path and the exchange factor F, between two plates");
+  one->add_option("BED", a.measure.bed, "a scene; or a frame, CSV or dump with --scene")->required();
+  one->add_option("--between", a.measure.between, "the plates are the walls of the box across x, y or z")
+      ->check(CLI::IsMember({"x", "y", "z"}))
+      ->capture_default_str();
+  one->add_option("--scene", a.measure.scene, "scene whose walls and materials BED has")
+      ->type_name("FILE.toml");
+  one->add_option("--temperature", a.measure.temperature_K,
+                  "K; default: the mean of the plates, else of the particles")
+      ->check(CLI::Range(1.0, 1e4));
+  one->add_option("--rays", a.measure.rays, "rays per particle of each replicate")
+      ->check(CLI::Range(1.0, 1e9))
+      ->capture_default_str();
+  one->add_option("--replicates", a.measure.replicates, "of the rays, for their error")
+      ->check(CLI::Range(2, 1000))
+      ->capture_default_str();
+  add_scene_edits(one, a);
+  add_output(one, a);
 }
 
 void apply(Arguments& a) {
@@ -93,8 +145,9 @@ void add_run(CLI::App& app, Arguments& a, Body& body) {
   add_output(run, a);
   add_stopping(run, a);
   run->add_flag("--resume", a.options.resume, "continue from the last whole frame in DIR");
-  run->callback(
-      [&] { body = [&] { return run_case(read_case(a.scene, a.overrides), a.folder, a.options); }; });
+  run->callback([&] {
+    body = [&] { return run_case(read_case(a.scene, a.overrides, a.removed), a.folder, a.options); };
+  });
 }
 
 void add_check(CLI::App& app, Arguments& a, Body& body) {
@@ -104,7 +157,9 @@ void add_check(CLI::App& app, Arguments& a, Body& body) {
   const auto defaults = std::make_shared<bool>(false);
   check->add_flag("--defaults", *defaults, "print the scene with every default in force, as comments");
   check->callback([&, defaults] {
-    body = [&, defaults] { return check_case(read_case(a.scene, a.overrides), a.options, *defaults); };
+    body = [&, defaults] {
+      return check_case(read_case(a.scene, a.overrides, a.removed), a.options, *defaults);
+    };
   });
 }
 
@@ -145,22 +200,69 @@ void add_keys(CLI::App& app, Body& body) {
   });
 }
 
+/// Every scene, once with each emissivity asked for.
+std::vector<Case> cases_to_validate(const Arguments& a) {
+  std::vector<Case> cases;
+  for (const auto& scene : a.scenes) {
+    if (a.emissivities.empty()) cases.push_back(read_case(scene, a.overrides, a.removed));
+    for (double one : a.emissivities) {
+      auto overrides = a.overrides;
+      overrides.push_back(fmt::format("material.emissivity={}", one));
+      cases.push_back(read_case(scene, overrides, a.removed));
+    }
+  }
+  return cases;
+}
+
 void add_validate(CLI::App& app, Arguments& a, Body& body) {
-  auto* validate = app.add_subcommand("validate", "compare exchange sources on a frozen bed");
-  add_scene(validate, a);
+  auto* validate = app.add_subcommand("validate", "compare exchange sources on frozen beds");
+  validate->add_option("SCENE", a.scenes, "scene files (TOML)")->required();
+  validate->add_option("--emissivity", a.emissivities, "of the particles: each scene once with each")
+      ->delimiter(',')
+      ->check(CLI::Range(0.0, 1.0));
+  validate
+      ->add_option("--max-error", a.validate.max_error_pct, "exit 4 when a source is off by more than PCT %")
+      ->type_name("PCT")
+      ->check(CLI::PositiveNumber);
+  add_scene_edits(validate, a);
   add_output(validate, a);
   validate->callback(
-      [&] { body = [&] { return validate_case(read_case(a.scene, a.overrides), a.folder, a.options); }; });
+      [&] { body = [&] { return validate_cases(cases_to_validate(a), a.folder, a.validate, a.options); }; });
+}
+
+void add_study(CLI::App& app, Arguments& a, Body& body) {
+  auto* study =
+      app.add_subcommand("study", "many cases: runs, validations, measurements, traces, fits; resumable");
+  add_study_options(study, a);
+  study->callback([&] {
+    body = [&] {
+      a.study.run = a.options;
+      return run_study(a.scene, a.folder, a.study);
+    };
+  });
 }
 
 void add_sweep(CLI::App& app, Arguments& a, Body& body) {
-  auto* sweep = app.add_subcommand("sweep", "parameter study; resumable");
-  sweep->add_option("SWEEP", a.scene, "sweep file (TOML)")->required();
-  add_output(sweep, a);
-  add_stopping(sweep, a);
-  sweep->add_flag("--list", a.list_only, "write the cases and jobs.txt, run nothing");
-  add_common(sweep, a);
-  sweep->callback([&] { body = [&] { return run_sweep(a.scene, a.folder, a.list_only, a.options); }; });
+  auto* sweep = app.add_subcommand("sweep", "the old name of study");
+  add_study_options(sweep, a);
+  sweep->callback([&] {
+    body = [&] {
+      a.study.run = a.options;
+      return run_study(a.scene, a.folder, a.study, "sweep.csv");
+    };
+  });
+}
+
+void add_measure(CLI::App& app, Arguments& a, Body& body) {
+  auto* measure = app.add_subcommand("measure", "properties of a bed");
+  add_conductivity(measure, a);
+  measure->callback([&] {
+    body = [&] {
+      a.measure.overrides = a.overrides;
+      a.measure.removed = a.removed;
+      return measure_case(a.measure, a.folder, a.options);
+    };
+  });
 }
 
 void add_report(CLI::App& app, Arguments& a, Body& body) {
@@ -190,7 +292,8 @@ int granrun(int argc, char** argv) {
       "(checkpoint saved). SIGUSR1 saves a checkpoint and the run goes on.");
   Arguments a;
   Body body;
-  for (auto* add : {add_run, add_check, add_validate, add_sweep, add_report, add_export, add_render})
+  for (auto* add : {add_run, add_check, add_validate, add_study, add_sweep, add_measure, add_report,
+                    add_export, add_render})
     add(app, a, body);
   add_new(app, body);
   add_keys(app, body);

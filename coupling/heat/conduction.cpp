@@ -6,6 +6,7 @@
 
 #include "coupling/heat/contact_conductance.h"
 #include "coupling/heat/gas_lens.h"
+#include "dem/base/constants.h"
 #include "dem/base/error.h"
 
 namespace granrad {
@@ -64,6 +65,25 @@ double gas_conductance_to_wall(const std::optional<GasLens>& gas, double radius,
          wall_lens((radius - distance) / radius, gas->minimum_gap_m / radius, gas->lens_radius_ratio);
 }
 
+/// Of softened spheres that carry a load at rest: the load from the flow's modulus and disc, the disc of the real one.
+/// The lens that overlapping spheres cut out is twice Hertz's disc, a^2 = R delta.
+double rough_conductance(const ConductionSettings& settings, const Material& a, const Material& b,
+                         double radius, double area_m2) {
+  if (!(area_m2 > 0)) return 0;
+  const auto plane_strain = [](double ya, double na, double yb, double nb) {
+    return 1 / ((1 - na * na) / ya + (1 - nb * nb) / yb);
+  };
+  const double soft =
+      plane_strain(a.youngs_modulus_Pa, a.poisson_ratio, b.youngs_modulus_Pa, b.poisson_ratio);
+  const double real =
+      plane_strain(a.real_youngs_modulus_Pa, a.poisson_ratio, b.real_youngs_modulus_Pa, b.poisson_ratio);
+  const double disc = std::sqrt(area_m2 / (2 * pi));
+  const double k =
+      2 * a.conductivity_W_mK * b.conductivity_W_mK / (a.conductivity_W_mK + b.conductivity_W_mK);
+  return rough_contact_conductance(*settings.rough, k, settings.gas ? settings.gas->conductivity_W_mK : 0,
+                                   hertz_force_N(soft, radius, disc), disc * std::cbrt(soft / real));
+}
+
 template <class Entry>
 void drop_empty(std::vector<Entry>& entries) {
   std::erase_if(entries, [](const Entry& e) { return e.solid_W_K == 0 && e.gas_W_K == 0; });
@@ -90,7 +110,7 @@ void add_touches(const Bed& bed, const Touches& touches, const ContactTable& con
       result.particles.push_back({i, j, solid(i, j, root_area_m), 0});
   }
   for (const auto& [i, wall, root_area_m] : touches.walls)
-    if (inside(i) && bed.walls[wall].role == WallRole::isothermal)
+    if (inside(i) && conducts(bed.walls[wall]))
       result.walls.push_back({i, wall, solid(i, i, root_area_m), 0});
   drop_empty(result.particles), drop_empty(result.walls);
 }
@@ -110,7 +130,11 @@ Conductances conductances(const Bed& bed, const NearPairs& pairs, const Conducti
     PairConductance& g = result.particles[k] = {i, j, 0, 0};
     if (!inside(i) || !inside(j)) continue;
     const double ri = bed.radius_m[i], rj = bed.radius_m[j];
-    g.solid_W_K = contact(bed.material[i], bed.material[j]) * std::sqrt(contact_area_m2(ri, rj, distance));
+    const double disc_m2 = contact_area_m2(ri, rj, distance);
+    g.solid_W_K = settings.rough && settings.solid
+                      ? rough_conductance(settings, bed.materials[bed.material[i]],
+                                          bed.materials[bed.material[j]], ri * rj / (ri + rj), disc_m2)
+                      : contact(bed.material[i], bed.material[j]) * std::sqrt(disc_m2);
     g.gas_W_K = gas_conductance(settings.gas, ri, rj, distance);
   }
   drop_empty(result.particles);
@@ -121,7 +145,11 @@ Conductances conductances(const Bed& bed, const NearPairs& pairs, const Conducti
     WallConductance& g = result.walls[k] = {i, wall, 0, 0};
     if (!inside(i) || !conducts(bed.walls[wall])) continue;
     const double r = bed.radius_m[i];
-    g.solid_W_K = contact(bed.material[i], bed.material[i]) * std::sqrt(wall_contact_area_m2(r, distance));
+    const double disc_m2 = wall_contact_area_m2(r, distance);
+    const Material& material = bed.materials[bed.material[i]];
+    g.solid_W_K = settings.rough && settings.solid
+                      ? rough_conductance(settings, material, material, r, disc_m2)
+                      : contact(bed.material[i], bed.material[i]) * std::sqrt(disc_m2);
     g.gas_W_K = gas_share * gas_conductance_to_wall(settings.gas, r, distance);
   }
   drop_empty(result.walls);

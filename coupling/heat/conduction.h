@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "coupling/heat/rough_contact.h"
 #include "dem/bed/bed.h"
 #include "dem/bed/near_pairs.h"
 #include "dem/bed/touches.h"
@@ -25,6 +26,8 @@ struct ConductionSettings {
   /// load; 1/5 there overstates conduction 4.5 times.
   double modulus_exponent = 0.2;
   std::optional<GasLens> gas;
+  /// Contacts of rough spheres at rest (rough_contact.h) instead of 2 k sqrt(A) (Y/Y_real)^p.
+  std::optional<RoughSurface> rough;
 };
 
 /// Conductances of a pair of particles, or of a particle and a wall, W/K.

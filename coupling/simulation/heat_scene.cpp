@@ -56,12 +56,45 @@ std::optional<GasLens> read_gas(TomlTable table) {
   return gas;
 }
 
+/// Keys of the rough law are read (and so known) in any case; without the law they are refused.
+std::optional<RoughSurface> read_rough_surface(TomlTable& table) {
+  const bool rough = table.choice({"contact_law",
+                                   "corrected: 2 k sqrt(A) (Y/Y_real)^p; rough: constriction and rough "
+                                   "joint in series (Yovanovich), for beds at rest"},
+                                  {"corrected", "rough"}, "corrected") == "rough";
+  const std::vector<const char*> keys = {"microhardness_Pa", "roughness_m", "asperity_slope", "accommodation",
+                                         "mean_free_path_m"};
+  if (!rough) {
+    for (const char* key : keys)
+      if (table.has(key))
+        table.problem(key, "is used by contact_law = \"rough\" alone; set that, or leave it out");
+    return {};
+  }
+  RoughSurface surface;
+  surface.microhardness_Pa = table.number({"microhardness_Pa", "microhardness of the softer body"},
+                                          {.unit = "Pa", .min = 0, .min_exclusive = true});
+  surface.roughness_m = table.number({"roughness_m", "root mean square roughness of one surface"},
+                                     {.unit = "m", .min = 0, .min_exclusive = true});
+  surface.slope = table.number({"asperity_slope", "mean absolute slope of the asperities of one surface"},
+                               {.min = 0, .max = 1, .min_exclusive = true});
+  surface.accommodation =
+      table.number({"accommodation", "thermal accommodation coefficient of gas and surface"},
+                   {.min = 0, .max = 1, .min_exclusive = true}, surface.accommodation);
+  surface.mean_free_path_m =
+      table.number({"mean_free_path_m", "mean free path of the gas"},
+                   {.unit = "m", .min = 0, .min_exclusive = true}, surface.mean_free_path_m);
+  if (table.has("modulus_exponent"))
+    table.problem("modulus_exponent", "has no meaning with contact_law = \"rough\"; leave it out");
+  return surface;
+}
+
 ConductionSettings read_conduction(TomlTable table) {
   ConductionSettings conduction;
   conduction.solid = table.boolean({"solid", "heat flows through contacts"}, true);
   conduction.modulus_exponent =
       table.number({"modulus_exponent", "of softened over real modulus in the contact radius"},
                    {.min = 0, .max = 1, .why = "1/5 collisions, 1/3 beds at rest"}, 0.2);
+  conduction.rough = read_rough_surface(table);
   return conduction;
 }
 
@@ -220,8 +253,22 @@ ValidateSettings read_validate(TomlTable table, const Scene& scene) {
           table.table({"reference", "The source the others are compared with; keys as in [radiation]"});
       reference.present())
     validate.reference = read_radiation(reference, scene, "paths");
-  for (auto& compared : table.tables({"compare", "A source to compare; keys as in [radiation]"}))
-    validate.compared.push_back(read_radiation(compared, scene, "correlation"));
+  for (auto& compared : table.tables({"compare", "A source to compare; keys as in [radiation]"})) {
+    const RadiationSettings settings = read_radiation(compared, scene, "correlation");
+    std::vector<double> ladder = {settings.rays};
+    if (compared.has("ladder")) {
+      if (compared.has("rays"))
+        compared.problem("ladder",
+                         "stands beside rays; keep one of them: a ladder lists the rays of each step");
+      ladder = compared.number_list(
+          {"ladder", "rays of each step: the source is compared once with each"},
+          {.min = settings.kind == RadiationKind::paths ? 2.0 * path_batches : 1, .max = 1e9}, 1);
+    }
+    for (double rays : ladder) {
+      validate.compared.push_back(settings);
+      validate.compared.back().rays = rays;
+    }
+  }
   if (table.has("times_s"))
     validate.times_s = table.number_list({"times_s", "times to compare at"},
                                          {.unit = "s", .min = 0, .min_exclusive = true}, 1);
@@ -296,8 +343,10 @@ HeatScene read_heat_scene(TomlDocument& document, const Scene& scene) {
   return heat;
 }
 
-Case read_case(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+Case read_case(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+               const std::vector<std::string>& removed) {
   auto document = TomlDocument::from_file(file);
+  for (const auto& key : removed) document.remove_key(key);
   for (const auto& override_text : overrides) document.override_value(override_text);
   Case result;
   result.flow = read_scene(document);

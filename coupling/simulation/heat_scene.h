@@ -70,7 +70,9 @@ struct Case {
   std::string text_with_defaults;  ///< as effective_text, with the defaults in force as comments
 };
 
-/// Reads a scene file with `overrides` ("key=value"). Throws InputError with every problem, IoError.
-Case read_case(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+/// Reads a scene file without the keys `removed` and with `overrides` ("key=value"). Throws InputError with
+/// every problem, IoError.
+Case read_case(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+               const std::vector<std::string>& removed = {});
 
 }  // namespace granrad

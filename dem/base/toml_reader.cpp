@@ -161,6 +161,34 @@ toml::node* TomlDocument::State::find(std::string_view path, toml::node* node) {
   return node;
 }
 
+void TomlDocument::remove_key(std::string_view path) {
+  const auto dot = path.rfind('.');
+  toml::node* parent =
+      dot == path.npos ? &state_->root : state_->find(path.substr(0, dot), &state_->root);
+  toml::table* table = parent ? parent->as_table() : nullptr;
+  if (!table || !table->contains(path.substr(dot + 1)))
+    return state_->add({state_->name}, "", fmt::format("unset {}: there is no such key", path));
+  table->erase(path.substr(dot + 1));
+}
+
+namespace {
+
+void collect_texts(const toml::node& node, std::vector<std::string>& texts) {
+  if (const auto* text = node.as_string()) texts.push_back(text->get());
+  if (const auto* table = node.as_table())
+    for (auto&& [key, value] : *table) collect_texts(value, texts);
+  if (const auto* array = node.as_array())
+    for (auto&& value : *array) collect_texts(value, texts);
+}
+
+}  // namespace
+
+std::vector<std::string> TomlDocument::texts() const {
+  std::vector<std::string> all;
+  collect_texts(state_->root, all);
+  return all;
+}
+
 void TomlDocument::problem(std::string_view path, std::string_view message) {
   const std::string at(path), why(message);
   if (path.empty()) return state_->add({state_->name}, "", why);

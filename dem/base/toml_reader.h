@@ -36,6 +36,11 @@ class TomlDocument {
   /// `--set radiation.rays=1000`: parsed as TOML value (bare words as strings); located as `--set`.
   void override_value(std::string_view key_equals_value);
 
+  /// Takes a key out, as if it had not been written ("feed.mass_flow_kg_s"); a problem when it is not there.
+  void remove_key(std::string_view path);
+  /// Every text value of the document in force, in order: file names among them.
+  std::vector<std::string> texts() const;
+
   TomlTable root();
   /// Folder of the file: relative paths inside it start here.
   std::filesystem::path folder() const;
@@ -94,6 +99,9 @@ class TomlTable {
   std::vector<Vec3> vec3_list(const Key& key, const NumberRule& each, std::size_t min_count);
   std::vector<double> number_list(const Key& key, const NumberRule& each, std::size_t min_count);
   std::vector<std::string> string_list(const Key& key, std::size_t min_count = 0);
+  std::vector<std::vector<std::string>> string_lists(const Key& key, std::size_t min_count = 0);
+  /// Numbers, texts and booleans, each as `override_value` reads them.
+  std::vector<std::string> value_list(const Key& key, std::size_t min_count = 0);
 
   /// When `key` names a TOML file, the keys of that file's root that this table lacks are added to it; they
   /// keep their place in that file for messages.

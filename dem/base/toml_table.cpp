@@ -245,6 +245,43 @@ std::vector<std::string> TomlTable::string_list(const Key& key, std::size_t min_
   return all;
 }
 
+std::vector<std::vector<std::string>> TomlTable::string_lists(const Key& key, std::size_t min_count) {
+  node_->use(key, KeyKind::texts).required = min_count > 0;
+  std::vector<std::vector<std::string>> all;
+  if (const toml::array* array = node_->list(key.name, min_count, "lists of texts in quotes"))
+    for (std::size_t k = 0; k < array->size(); ++k) {
+      const toml::array* inner = (*array)[k].as_array();
+      all.emplace_back();
+      for (std::size_t m = 0; inner && m < inner->size(); ++m)
+        if (const auto* text = (*inner)[m].as_string()) all.back().push_back(text->get());
+      if (!inner || all.back().size() != inner->size())
+        node_->state->add_at((*array)[k], fmt::format("{}[{}]", node_->path_of(key.name), k),
+                             "must be a list of texts in quotes");
+    }
+  return all;
+}
+
+std::vector<std::string> TomlTable::value_list(const Key& key, std::size_t min_count) {
+  node_->use(key, KeyKind::texts).required = min_count > 0;
+  std::vector<std::string> all;
+  if (const toml::array* array = node_->list(key.name, min_count, "numbers, texts or booleans"))
+    for (std::size_t k = 0; k < array->size(); ++k) {
+      const toml::node& node = (*array)[k];
+      if (const auto* text = node.as_string())
+        all.push_back(text->get());
+      else if (const auto* whole = node.as_integer())
+        all.push_back(fmt::format("{}", whole->get()));
+      else if (const auto* real = node.as_floating_point())
+        all.push_back(fmt::format("{}", real->get()));
+      else if (const auto* truth = node.as_boolean())
+        all.push_back(truth->get() ? "true" : "false");
+      else
+        node_->state->add_at(node, fmt::format("{}[{}]", node_->path_of(key.name), k),
+                             "must be a number, a text in quotes, true or false");
+    }
+  return all;
+}
+
 void TomlTable::add_keys_from_file(const Key& key) {
   const fs::path from = file(key, false);
   if (from.empty()) return;

@@ -91,12 +91,26 @@ void refuse_two_sizes(const Scene& scene, const Snapshot& snapshot) {
               "leave diameter_m out"));
 }
 
+/// Whether a face of the box bounds the place: always where the box is all there is; beside other walls (a hopper wider
+/// than the channel below it) only as far as the face goes.
+bool bounds(const Scene& scene, const Wall& face, const Vec3& p) {
+  if (scene.walls.size() == scene.box_wall_count) return true;
+  for (int k = 0; k < 3; ++k) {
+    double low = face.vertices[0][k], high = low;
+    for (const Vec3& v : face.vertices) low = std::min(low, v[k]), high = std::max(high, v[k]);
+    if (low < high && (p[k] < low || p[k] > high)) return false;
+  }
+  return true;
+}
+
 void refuse_particles_behind_walls(const Scene& scene, const Bed& bed) {
   std::vector<std::int64_t> outside;
   std::size_t count = 0;
   for (std::size_t i = 0; i < bed.size(); ++i) {
     const Vec3 p = wrapped_into_box(bed, bed.position_m[i]);
-    const auto behind = [&](const Wall& wall) { return wall.contact && plane_of(wall)->height(p) < 0; };
+    const auto behind = [&](const Wall& wall) {
+      return wall.contact && plane_of(wall)->height(p) < 0 && bounds(scene, wall, p);
+    };
     if (std::none_of(scene.walls.begin(), scene.walls.begin() + scene.box_wall_count, behind)) continue;
     if (count++ < examples_shown) outside.push_back(bed.id[i]);
   }

@@ -191,6 +191,55 @@ void add_generate(CLI::App& app, Body& body) {
   });
 }
 
+void add_curve(CLI::App& app, Body& body) {
+  const auto command = std::make_shared<CurveCommand>();
+  auto& sub = *app.add_subcommand("curve", "A curve through two columns of a CSV file, with errors");
+  sub.add_option("DATA", command->data, "CSV with a header, of a study for example")->required();
+  sub.add_option(
+         "--form", command->form,
+         "power: a x^b; line: a + b x; logarithm: a ln(b x); exponential_logarithm: a e^(b x) + c ln(d x)")
+      ->required()
+      ->check(CLI::IsMember({"power", "line", "logarithm", "exponential_logarithm"}));
+  sub.add_option("-x", command->x, "column of x")->capture_default_str();
+  sub.add_option("-y", command->y, "column of y")->capture_default_str();
+  sub.add_option("-o,--output", command->output, "JSON file");
+  sub.callback(
+      [&body, command] { body = [command](Verbosity verbosity) { return run_curve(*command, verbosity); }; });
+}
+
+void add_measure(CLI::App& app, Body& body) {
+  const auto command = std::make_shared<MeasureCommand>();
+  const auto box = std::make_shared<std::string>();
+  auto& sub = *app.add_subcommand("measure",
+                                  "Extinction, transmittance, mean free path and exchange factor of a bed");
+  sub.add_option("SNAPSHOT", command->snapshot, "frame (.hdf), CSV or LIGGGHTS/LAMMPS text dump")->required();
+  sub.add_option("-o,--output", command->folder, "folder for measure.json and report.html");
+  sub.add_option("--between", command->between,
+                 "the plates are the walls of the box across x, y or z: exchange factor F")
+      ->check(CLI::IsMember({"x", "y", "z"}));
+  sub.add_option("--emissivity", command->emissivity, "of particles and plates, for F")
+      ->check(number_in(1e-6, 1))
+      ->capture_default_str();
+  sub.add_option("--rays", command->rays, "for F, per particle of each of four replicates")
+      ->check(number_in(1, 1e9))
+      ->capture_default_str();
+  sub.add_option("--box", *box, "walls: X,Y,Z in metres, corner at the origin or at :x0,y0,z0");
+  sub.add_option("--radius", command->enclosure.radius_m, "radius in metres, for files without one")
+      ->check(number_in(1e-12, 1e6));
+  sub.add_option("--walls", command->enclosure.stl, "STL file of walls, metres");
+  sub.add_option("--seed", command->seed, "of the random numbers")
+      ->check(seed_number())
+      ->capture_default_str();
+  sub.add_option("--threads", command->threads, "0: all; results do not depend on it")
+      ->check(CLI::Range(0, 4096));
+  sub.callback([&body, command, box] {
+    body = [command, box](Verbosity verbosity) {
+      if (!box->empty()) command->enclosure.box = parse_box(*box);
+      return run_measure(*command, verbosity);
+    };
+  });
+}
+
 void add_check(CLI::App& app, Body& body) {
   const auto table = std::make_shared<std::filesystem::path>();
   auto& sub = *app.add_subcommand("check", "Bounds, range and closure of a correlation table");
@@ -234,6 +283,8 @@ int run(int argc, char** argv) {
   add_generate(app, body);
   add_check(app, body);
   add_keys(app, body);
+  add_curve(app, body);
+  add_measure(app, body);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -31,6 +31,25 @@ int run_fit(const FitCommand& command, Verbosity verbosity);
 /// vfgen check: findings on stdout; exit code 2 when any is a problem.
 int run_check(const std::filesystem::path& table, Verbosity verbosity);
 
+/// vfgen curve: a curve y(x) through two columns of a CSV file (fit/fitting/curve_fit.h), as JSON.
+struct CurveCommand {
+  std::filesystem::path data, output;
+  std::string x = "x", y = "y", form;
+};
+int run_curve(const CurveCommand& command, Verbosity verbosity);
+
+/// vfgen measure: extinction, transmittance and mean free path of a bed; with two plates its exchange factor F.
+struct MeasureCommand {
+  std::filesystem::path snapshot, folder;
+  EnclosureSettings enclosure;
+  std::string between;  ///< x, y or z: the plates are the walls of the box across it; empty: no F
+  double emissivity = 1, rays = 2000;
+  std::int64_t extinction_rays = 1000000;
+  int replicates = 4, threads = 0;
+  std::uint64_t seed = 1;
+};
+int run_measure(const MeasureCommand& command, Verbosity verbosity);
+
 /// vfgen generate: see fit/vfgen/generate.h.
 struct GenerateCommand {
   std::filesystem::path config, folder;

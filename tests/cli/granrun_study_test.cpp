@@ -1,8 +1,11 @@
-// Requirement: validate, sweep, report and export produce their files, and a sweep skips what is finished.
-#include <algorithm>
-#include <cmath>
+// Requirement: a study runs every case once and knows a case by its scene, inputs and version: what is stale runs
+// anew, what is impossible fails alone and is named, and a killed study loses nothing.
+#include <signal.h>
 
-#include "coupling/simulation/history.h"
+#include <chrono>
+#include <map>
+#include <thread>
+
 #include "granrun.h"
 
 using namespace granrad;
@@ -10,118 +13,254 @@ using namespace granrad::cli;
 
 namespace {
 
-std::size_t lines(const std::string& text) {
-  return std::count(text.begin(), text.end(), '\n');
+using Row = std::map<std::string, std::string>;
+
+std::vector<std::string> cells(const std::string& line) {
+  std::vector<std::string> all(1);
+  for (const char c : line)
+    if (c == ',')
+      all.emplace_back();
+    else
+      all.back() += c;
+  return all;
 }
+
+std::vector<Row> rows(const fs::path& csv) {
+  std::stringstream text(content(csv));
+  std::string line;
+  std::getline(text, line);
+  const auto names = cells(line);
+  std::vector<Row> all;
+  while (std::getline(text, line)) {
+    const auto values = cells(line);
+    EXPECT_EQ(values.size(), names.size()) << line;
+    all.emplace_back();
+    for (std::size_t k = 0; k < std::min(names.size(), values.size()); ++k) all.back()[names[k]] = values[k];
+  }
+  return all;
+}
+
+/// 0.008 s of the small plug, and a study of it.
+struct SmallStudy : Scratch {
+  fs::path scene = root / "plug.toml", file = root / "study.toml", folder = root / "out";
+
+  SmallStudy() { write("plug.toml", edited(small_plug, "end_time_s = 0.04", "end_time_s = 0.008")); }
+  Outcome run(const std::string& study, const std::string& options = "") {
+    write("study.toml", study);
+    return granrun(*this, "study " + file.string() + " -o " + folder.string() + " --jobs 2 " + options);
+  }
+};
+
+const std::string two_cases =
+    "[study]\nscene = \"plug.toml\"\n[[vary]]\nkey = \"material.emissivity\"\nvalues = [0.4, 1]\n";
 
 }  // namespace
 
-TEST(GranrunValidate, ComparesSourcesOnAFrozenBed) {
-  Scratch scratch;
-  const auto scene =
-      scratch
-          .write("plug.toml",
-                 edited(small_plug, "[output]",
-                        "[validate]\ntimes_s = [0.01, 0.04]\n[validate.reference]\nsource = \"embree\"\n"
-                        "rays = 20000\n[[validate.compare]]\nsource = \"lines\"\n[[validate.compare]]\n"
-                        "source = \"paths\"\nrays = 5000\n[output]"))
-          .string();
-  const auto folder = scratch.root / "v";
-  const auto outcome = granrun(scratch, "validate " + scene + " -o " + folder.string());
+TEST(GranrunStudy, EveryKindOfVariationBecomesOneRow) {
+  SmallStudy study;
+  const std::string text =
+      "[study]\nscene = \"plug.toml\"\n"
+      "[[vary]]\nkeys = [\"walls.y_min.temperature_K\", \"walls.y_max.temperature_K\"]\nname = \"Tw\"\n"
+      "values = [700, 1000]\n"
+      "[[vary]]\nnames = [\"small\", \"large\"]\nset = [[\"particles.diameter_m='0.6 mm'\", \"dem.step_s=5e-6\"], "
+      "[\"particles.diameter_m='0.8 mm'\"]]\n"
+      "[[group]]\nname = \"flow\"\nunset = [\"feed.velocity_m_s\"]\nset = [\"feed.mass_flow_kg_s=0.0005\"]\n"
+      "seeds = [1, 2]\n[[group.case]]\nname = \"slow\"\n"
+      "[[group]]\nname = \"frozen\"\n[[group.case]]\nname = \"goes_on\"\nstart = \"Tw-700_small\"\n"
+      "set = [\"dem.engine=none\", \"particles.diameter_m='0.6 mm'\"]\nunset = [\"dem.step_s\"]\n"
+      "[[column]]\nname = \"double_h\"\nformula = \"2 * h_wp_W_m2K\"\n";
+  const auto outcome = study.run(text);
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const auto csv = content(folder / "validation.csv");
-  EXPECT_EQ(
-      csv.rfind("solid_fraction,source,rays,time_s,mean_temperature_K,mean_flux_W_m2,temperature_error_pct,"
-                "flux_error_pct,particle_flux_rms_pct,reference_noise_pct,energy_defect,seconds_per_update\n",
-                0),
-      0u);
-  ASSERT_EQ(lines(csv), 1u + 3 * 2) << csv;
-  std::stringstream text(csv);
-  std::string line;
-  std::getline(text, line);
-  while (std::getline(text, line)) {
-    std::vector<std::string> cells;
-    std::stringstream row(line);
-    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
-    ASSERT_EQ(cells.size(), 12u) << line;
-    EXPECT_LT(std::abs(std::stod(cells[6])), 0.5) << line;
-    // Embree and lines share one radiosity per adiabatic wall; paths do not and are noisy.
-    EXPECT_LT(std::abs(std::stod(cells[7])), cells[1] == "paths" ? 6 : 1) << line;
-    EXPECT_LT(std::stod(cells[10]), 1e-10) << line;
+  const auto table = rows(study.folder / "study.csv");
+  ASSERT_EQ(table.size(), 6u);
+  EXPECT_EQ(table[0].at("case"), "Tw-700_small");
+  for (const char* wall : {"walls.y_min.temperature_K", "walls.y_max.temperature_K"}) {
+    EXPECT_EQ(table[0].at(wall), "700") << "both keys change together";
+    EXPECT_EQ(table[3].at(wall), "1000");
   }
-  const auto page = content(folder / "report.html");
-  EXPECT_NE(page.find("<svg"), std::string::npos);
-  EXPECT_NE(page.find("Particle fluxes"), std::string::npos);
+  EXPECT_EQ(table[1].at("particles.diameter_m"), "'0.8 mm'");
+  EXPECT_EQ(table[4].at("case"), "flow/slow");
+  EXPECT_EQ(table[4].at("replicates"), "2");
+  EXPECT_GT(std::stod(table[4].at("h_wp_W_m2K_stderr")), 0) << "the scatter between seeds";
+  EXPECT_NEAR(std::stod(table[4].at("mass_flow_in_kg_s")), 0.0005, 0.0005);
+  EXPECT_EQ(table[5].at("status"), "finished") << "begins with the last frame of another case";
+  for (const auto& row : table) {
+    EXPECT_NEAR(std::stod(row.at("double_h")), 2 * std::stod(row.at("h_wp_W_m2K")), 1e-5);
+    EXPECT_NEAR(std::stod(row.at("share_ss_pct")) + std::stod(row.at("share_sfs_pct")) +
+                    std::stod(row.at("share_rad_pct")),
+                100, 1e-6);
+  }
+  EXPECT_NE(content(study.folder / "report.html").find("Every case"), std::string::npos);
 }
 
-TEST(GranrunSweep, RunsEveryCaseOnceAndPrintsAJobsFile) {
-  Scratch scratch;
-  scratch.write("plug.toml", edited(small_plug, "end_time_s = 0.04", "end_time_s = 0.008"));
-  const auto sweep =
-      scratch
-          .write("sweep.toml",
-                 "[sweep]\nscene = \"plug.toml\"\n[[vary]]\nkey = \"material.emissivity\"\n"
-                 "values = [0.4, 1]\n[[vary]]\nkey = \"radiation.source\"\ntexts = [\"paths\", \"none\"]\n"
-                 "[[case]]\nname = \"hot\"\nset = [\"walls.y_min.temperature_K=1300\"]\n")
-          .string();
-  const auto folder = scratch.root / "study";
-  ASSERT_EQ(granrun(scratch, "sweep " + sweep + " --list -o " + folder.string()).code, 0);
-  EXPECT_EQ(lines(content(folder / "jobs.txt")), 5u);
-  EXPECT_FALSE(fs::exists(folder / "hot"));
-  const auto outcome = granrun(scratch, "sweep " + sweep + " -o " + folder.string());
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_TRUE(fs::exists(folder / "emissivity-0.4_source-paths" / "history.csv"));
-  const auto summary = content(folder / "sweep.csv");
-  EXPECT_EQ(lines(summary), 6u) << summary;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (!entry.is_directory()) continue;
-    EXPECT_NE(content(entry.path() / "run.json").find("\"finished\": true"), std::string::npos)
-        << entry.path();
+// Planted: identity without the scene: the second study keeps the old rows.
+TEST(GranrunStudy, AChangedSceneInputOrVersionRunsAnewAndKeepsTheOld) {
+  SmallStudy study;
+  ASSERT_EQ(study.run(two_cases).code, 0);
+  const auto first = rows(study.folder / "study.csv");
+  const auto history = study.folder / "emissivity-1" / "history.csv";
+  const auto written = fs::last_write_time(history);
+  const auto again = study.run(two_cases);
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(fs::last_write_time(history), written) << "finished cases are not run again";
+
+  study.write("plug.toml", edited(content(study.scene), "temperature_K = 1000", "temperature_K = 700"));
+  const auto changed = study.run(two_cases);
+  ASSERT_EQ(changed.code, 0) << changed.err;
+  const auto second = rows(study.folder / "study.csv");
+  for (int k = 0; k < 2; ++k)
+    EXPECT_LT(std::stod(second[k].at("Q_rad_W")), 0.5 * std::stod(first[k].at("Q_rad_W")))
+        << "the hot walls cooled";
+  EXPECT_NE(changed.err.find("case emissivity-1: its scene, inputs or the version"), std::string::npos)
+      << changed.err;
+  EXPECT_TRUE(fs::exists(study.folder / "superseded"));
+
+  // The contents of a file that the scene names count as well.
+  fs::copy(fs::path(GRANRAD_SOURCE_DATA) / "correlations" / "li_2024_printed.toml",
+           study.root / "table.toml");
+  const std::string with_table = two_cases +
+                                 "[[case]]\nname = \"table\"\nset = [\"radiation.source=correlation\", "
+                                 "\"radiation.table=table.toml\"]\n";
+  study.write("plug.toml", edited(content(study.scene), "rays = 500\n", ""));
+  ASSERT_EQ(study.run(with_table).code, 0);
+  const auto record = content(study.folder / "table.case.json");
+  study.write("table.toml", content(study.root / "table.toml") + "# read once more\n");
+  ASSERT_EQ(study.run(with_table).code, 0);
+  EXPECT_NE(content(study.folder / "table.case.json"), record);
+  // ... and so does the version of the program, unless told otherwise.
+  const auto file = study.folder / "table.case.json";
+  study.write("out/table.case.json", edited(content(file), "\"version\": \"0", "\"version\": \"old 0"));
+  EXPECT_EQ(study.run(with_table, "--any-version").err.find("case table"), std::string::npos);
+  EXPECT_NE(study.run(with_table).err.find("case table: finished"), std::string::npos);
+}
+
+// Planted: a throw of the first bad case ends the study.
+TEST(GranrunStudy, AnImpossibleCaseFailsAloneAndIsNamed) {
+  SmallStudy study;
+  const auto outcome = study.run(
+      "[study]\nscene = \"plug.toml\"\n[[vary]]\nkey = \"material.emissivity\"\nvalues = [2, 0.4]\n"
+      "[[case]]\nname = \"too_long_a_step\"\nset = [\"dem.step_s=1e-3\"]\n"
+      "[[case]]\nname = \"child\"\nstart = \"too_long_a_step\"\n[[case]]\nname = \"good\"\nset = []\n");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.err.find("case emissivity-2: "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("case too_long_a_step: "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("case child: not run"), std::string::npos) << outcome.err;
+  std::map<std::string, std::string> status;
+  for (const auto& row : rows(study.folder / "study.csv")) status[row.at("case")] = row.at("status");
+  EXPECT_EQ(status["emissivity-0.4"], "finished");
+  EXPECT_EQ(status["good"], "finished");
+  EXPECT_EQ(status["emissivity-2"], "failed");
+  EXPECT_EQ(status["too_long_a_step"], "failed");
+
+  // Nothing possible: nothing written.
+  study.write("plug.toml", edited(content(study.scene), "radiation", "radiaton"));
+  study.folder = study.root / "none";
+  EXPECT_EQ(study.run(two_cases).code, 2);
+  EXPECT_FALSE(fs::exists(study.folder));
+}
+
+TEST(GranrunStudy, AKilledStudyGoesOnWhereItWas) {
+  SmallStudy study;
+  study.write("plug.toml", edited(small_plug, "end_time_s = 0.04", "end_time_s = 0.2"));
+  study.write("study.toml", two_cases);
+  const std::vector<std::string> words = {"study", study.file.string(), "-o", study.folder.string(), "--jobs",
+                                          "2"};
+  for (const int number : {SIGTERM, SIGKILL}) {
+    const auto frames = study.folder / "emissivity-0.4" / "frames" /
+                        (number == SIGTERM ? "f_000000800.hdf" : "f_000003200.hdf");
+    const pid_t child = start_granrun(words);
+    for (int k = 0; k < 2000 && !fs::exists(frames); ++k)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    ASSERT_TRUE(fs::exists(frames));
+    kill(child, number);
+    int state = 0;
+    waitpid(child, &state, 0);
+    EXPECT_EQ(exit_code(state), 128 + number);
   }
-
-  const auto written = fs::last_write_time(folder / "hot" / "history.csv");
-  ASSERT_EQ(granrun(scratch, "sweep " + sweep + " -o " + folder.string()).code, 0);
-  EXPECT_EQ(fs::last_write_time(folder / "hot" / "history.csv"), written)
-      << "finished cases are not run again";
-
-  scratch.write(
-      "bad.toml",
-      "[sweep]\nscene = \"plug.toml\"\n[[vary]]\nkey = \"material.emissivity\"\nvalues = [0.4, 2]\n");
-  EXPECT_EQ(granrun(scratch,
-                    "sweep " + (scratch.root / "bad.toml").string() + " -o " + (scratch.root / "b").string())
+  const auto outcome = study.run(two_cases);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(content(study.folder / "emissivity-0.4.log").find("resumed from"), std::string::npos);
+  const auto whole = study.root / "whole";
+  ASSERT_EQ(granrun(study, "run " + study.scene.string() +
+                               " -q --set material.emissivity=0.4 --set "
+                               "'scene.name=\"emissivity-0.4\"' -o " +
+                               whole.string())
                 .code,
-            2);
-  EXPECT_FALSE(fs::exists(scratch.root / "b"));
+            0);
+  EXPECT_EQ(content(whole / "history.csv"), content(study.folder / "emissivity-0.4" / "history.csv"))
+      << "as if it had never been killed";
 }
 
-TEST(GranrunExport, FramesReachOtherTools) {
-  Scratch scratch;
-  const auto scene =
-      scratch.write("plug.toml", edited(small_plug, "step_s = 1e-5", "engine = \"none\"")).string();
-  const auto folder = scratch.root / "case";
-  ASSERT_EQ(granrun(scratch, "run " + scene + " -q -o " + folder.string()).code, 0);
-  ASSERT_EQ(granrun(scratch, "export " + folder.string() + " --to dump").code, 0);
-  ASSERT_EQ(granrun(scratch, "export " + folder.string() + " --to vtp").code, 0);
-  const auto dump = content(folder / "export" / "f_000020000.dump");
-  EXPECT_NE(dump.find("ITEM: ATOMS id type x y z radius"), std::string::npos);
-  EXPECT_NE(content(folder / "export" / "f_000020000.vtp").find("<VTKFile type=\"PolyData\""),
-            std::string::npos);
-  // What was exported can start a scene again.
-  const auto again =
-      scratch
-          .write("again.toml",
-                 edited(edited(small_plug,
-                               "[feed]\nkind = \"plug\"\nsolid_fraction = 0.25\nvelocity_m_s = 0.1\n"
-                               "transverse_velocity_std_m_s = 0.02\nseed = 3\n",
-                               ""),
-                        "temperature_K = 300\n",
-                        "temperature_K = 300\nfile = \"case/export/f_000020000.dump\"\n"))
-          .string();
-  const auto outcome = granrun(scratch, "check " + again);
-  EXPECT_EQ(outcome.code, 0) << outcome.err;
+TEST(GranrunStudy, JobFilesRunTheSameCases) {
+  SmallStudy study;
+  const auto listed = study.run(two_cases, "--list");
+  ASSERT_EQ(listed.code, 0) << listed.err;
+  EXPECT_FALSE(fs::exists(study.folder / "emissivity-1"));
+  std::stringstream jobs(content(study.folder / "jobs.txt"));
+  int count = 0;
+  for (std::string line; std::getline(jobs, line); ++count)
+    EXPECT_EQ(std::system(("PATH=" + std::string(GRANRAD_BIN_DIR) + ":$PATH; " + line + " -q").c_str()), 0)
+        << line;
+  EXPECT_EQ(count, 2);
+  const auto gathered = study.run(two_cases);
+  EXPECT_EQ(gathered.err.find("finished in"), std::string::npos) << "all are there: " << gathered.err;
+  for (const auto& row : rows(study.folder / "study.csv")) EXPECT_EQ(row.at("status"), "finished");
+  EXPECT_NE(content(study.folder / "slurm_array.sh").find("--array=1-2"), std::string::npos);
+  if (std::system("command -v snakemake >/dev/null 2>&1") != 0) GTEST_SKIP() << "no snakemake here";
+  EXPECT_EQ(std::system(("cd " + study.folder.string() + " && PATH=" + GRANRAD_BIN_DIR +
+                         ":$PATH snakemake --cores 1 -q >/dev/null 2>&1")
+                            .c_str()),
+            0);
+}
 
-  ASSERT_EQ(granrun(scratch, "report " + folder.string()).code, 0);
-  const auto page = content(folder / "report.html");
-  for (const char* text : {"<svg", "Wall-to-particle coefficients", "Profiles", "h_wp_W_m2K"})
-    EXPECT_NE(page.find(text), std::string::npos) << text;
+TEST(GranrunStudy, ClaimsAndFitsAreJudgedAndSweepIsItsOldName) {
+  SmallStudy study;
+  study.write(
+      "claims.csv",
+      "id,quantity,class,place,claim,unit,reference,uncertainty,tolerance_pct,ours,why\n"
+      "1,ratio,A,here,\"h with itself, twice\",,2,,0.1,{e/emissivity-1:h_wp_W_m2K} / {e/emissivity-1:h_wp_W_m2K} * 2,\n"
+      "2,ratio,A,here,wrong,,3,,0.1,2 * {e/emissivity-1:h_wp_W_m2K} / {e/emissivity-1:h_wp_W_m2K},planted\n"
+      "3,none,P,there,no way,,1,,,,nobody knows how\n4,exponent,A,here,near 1,,1,,40,{fit rad:b},\n");
+  const std::string text =
+      "[sweep]\nscene = \"plug.toml\"\n[[group]]\nname = \"e\"\n[[group.vary]]\nkey = \"material.emissivity\"\n"
+      "values = [0.2, 0.4, 0.7, 1]\n[[fit]]\nname = \"rad\"\nx = \"material.emissivity\"\ny = \"h_rad_W_m2K\"\n"
+      "form = \"power\"\ngroup = \"e\"\n[claims]\nfile = \"claims.csv\"\n[[figure]]\ntitle = \"h\"\n"
+      "x = \"material.emissivity\"\ny = [\"h_rad_W_m2K\"]\n[[figure.curve]]\nlabel = \"line\"\nformula = \"10 * x\"\n";
+  study.write("study.toml", text);
+  const auto outcome = granrun(study, "sweep " + study.file.string() + " -o " + study.folder.string() +
+                                          " --book " + (study.root / "book.md").string());
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_TRUE(fs::exists(study.folder / "sweep.csv"));
+  const auto judged = content(study.folder / "claims.csv");
+  EXPECT_NE(judged.find("\"1\",\"ratio\",\"A\",\"here\",\"h with itself, twice\",\"\",2,0,2,0,0,agrees"),
+            std::string::npos)
+      << judged;
+  EXPECT_NE(judged.find(",differs,\"planted\""), std::string::npos) << judged;
+  EXPECT_NE(judged.find("not reproducible as stated"), std::string::npos) << judged;
+  const auto book = content(study.root / "book.md");
+  EXPECT_NE(book.find("**differs**"), std::string::npos) << "failures stay in the book";
+  EXPECT_NE(book.find("--case e/emissivity-1"), std::string::npos) << book;
+
+  study.write("claims.csv", "id,reference,ours\n1,2,{e/emissivity-3:h_wp_W_m2K}\n2,2,1 +\n");
+  const auto bad = study.run(text);
+  EXPECT_EQ(bad.code, 2);
+  EXPECT_NE(bad.err.find("there is no such case"), std::string::npos) << bad.err;
+  EXPECT_NE(bad.err.find("claim 2"), std::string::npos) << bad.err;
+}
+
+TEST(GranrunStudy, AStudyThatIsWrittenWrongIsRefused) {
+  SmallStudy study;
+  const auto refused = [&](const std::string& text, const std::string& why) {
+    const auto outcome = study.run(text);
+    EXPECT_EQ(outcome.code, 2) << text;
+    EXPECT_NE(outcome.err.find(why), std::string::npos) << text << "\n" << outcome.err;
+    EXPECT_FALSE(fs::exists(study.folder)) << text;
+  };
+  refused("[study]\nscene = \"plug.toml\"\n", "has no cases");
+  refused("[[case]]\nname = \"a\"\n", "has no scene");
+  refused(two_cases + "[[case]]\nname = \"emissivity-1\"\n", "two cases are named");
+  refused(two_cases + "[[case]]\nname = \"a\"\nstart = \"b\"\n", "needs b, which is no other case");
+  refused(two_cases + "[[case]]\nname = \"a\"\nkind = \"walk\"\n", "must be one of");
+  refused(two_cases + "[[vary]]\nnames = [\"a\"]\nset = [[\"b=1\"], [\"b=2\"]]\n", "names");
+  refused(two_cases + "[[case]]\nname = \"a\"\ncolour = 1\n", "unknown key 'colour'");
 }

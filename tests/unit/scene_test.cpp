@@ -304,6 +304,18 @@ TEST(InitialBed, TakesParticlesFromAFileSortedById) {
   EXPECT_EQ(bed.materials.size(), 1u);
 }
 
+// Planted: the plane of a face taken as endless: what stands in a hopper above the channel is refused.
+TEST(InitialBed, AFaceBoundsOnlyAsFarAsItGoesBesideOtherWalls) {
+  const TemporaryFolder folder;
+  const std::string hopper =
+      "[walls.z_max]\ncontact = false\n[[polygon]]\nname = \"hopper\"\nrole = \"adiabatic\"\n"
+      "vertices_m = [[0.03, 0, 0.06], [0.03, 0.004, 0.06], [0.01, 0.004, 0.05], [0.01, 0, 0.05]]\n";
+  const auto above = folder.write("above.csv", "x,y,z,radius\n0.012,0.002,0.055,0.0004\n");
+  EXPECT_NO_THROW(initial_bed(scene_from_file(above, hopper))) << "wider than the channel below it";
+  const auto beside = folder.write("beside.csv", "x,y,z,radius\n0.012,0.002,0.02,0.0004\n");
+  EXPECT_THROW(initial_bed(scene_from_file(beside, hopper)), InputError);
+}
+
 TEST(InitialBed, RefusesParticlesOutsideTheWallsAndDeepOverlaps) {
   const TemporaryFolder folder;
   std::string rows = "x,y,z,radius\n";

@@ -1,0 +1,162 @@
+#include "coupling/study/claims.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "coupling/simulation/case_folder.h"
+#include "coupling/simulation/history.h"
+#include "coupling/study/csv_cells.h"
+#include "dem/base/error.h"
+
+namespace granrad {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+double number(const std::string& cell, const std::string& where, double otherwise) {
+  if (cell.empty()) return otherwise;
+  char* end = nullptr;
+  const double value = std::strtod(cell.c_str(), &end);
+  if (*end != '\0') throw InputError(fmt::format("{}: {} (must be a number)", where, cell));
+  return value;
+}
+
+std::vector<Claim> read_claims(const fs::path& file) {
+  std::stringstream text(read_text_file(file));
+  std::string line;
+  std::getline(text, line);
+  const auto names = csv_cells(line);
+  std::vector<Claim> all;
+  for (int row = 2; std::getline(text, line); ++row) {
+    if (line.empty() || line.front() == '#') continue;
+    const auto cells = csv_cells(line);
+    const auto where = fmt::format("{}:{}", file.string(), row);
+    if (cells.size() != names.size())
+      throw InputError(fmt::format("{}: {} cells for {} columns", where, cells.size(), names.size()));
+    const auto of = [&](const std::string& name) -> std::string {
+      const auto at = std::find(names.begin(), names.end(), name);
+      return at == names.end() ? "" : cells[static_cast<std::size_t>(at - names.begin())];
+    };
+    all.push_back({of("id"), of("quantity"), of("class"), of("place"), of("claim"), of("unit"), of("ours"),
+                   of("why"), of("verdict"), number(of("reference"), where, unknown),
+                   number(of("uncertainty"), where, 0), number(of("tolerance_pct"), where, 0)});
+  }
+  return all;
+}
+
+/// A quantity by its full name; nan where the case has not run, an error where there is none such.
+Measured find(const std::string& name, const std::vector<StudyRow>& rows,
+              const std::vector<FittedCurve>& curves, std::vector<std::string>& points) {
+  const auto colon = name.find(':');
+  const std::string point = name.substr(0, colon), what = colon == name.npos ? "" : name.substr(colon + 1);
+  if (point.starts_with("fit "))
+    for (const auto& curve : curves)
+      if (point == "fit " + curve.of.name) {
+        const auto found = curve.coefficient.find(what);
+        return found == curve.coefficient.end() ? Measured{unknown, 0} : found->second;
+      }
+  for (const auto& row : rows)
+    if (row.of->point == point) {
+      points.push_back(point);
+      if (row.finished == 0) return {unknown, 0};
+      const auto found = row.quantity.find(what);
+      if (found == row.quantity.end())
+        throw InputError(fmt::format("{{{}}}: case {} has no quantity {}", name, point, what));
+      return found->second;
+    }
+  throw InputError(fmt::format("{{{}}}: there is no such case or fit", name));
+}
+
+bool agrees(const Judgement& j) {
+  const double apart = std::abs(j.ours.value - j.claim.reference);
+  if (j.claim.tolerance_pct > 0) return apart <= j.claim.tolerance_pct / 100 * std::abs(j.claim.reference);
+  const double error = std::isfinite(j.ours.error) ? j.ours.error : 0;
+  return apart <= 2 * std::hypot(error, j.claim.uncertainty);
+}
+
+std::string quoted(const std::string& text) {
+  std::string inside;
+  for (const char c : text) inside += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return fmt::format("\"{}\"", inside);
+}
+
+}  // namespace
+
+std::vector<Judgement> judge(const fs::path& file, const Study&, const std::vector<StudyRow>& rows,
+                             const std::vector<FittedCurve>& curves) {
+  std::vector<Judgement> all;
+  std::vector<std::string> problems;
+  for (const auto& claim : read_claims(file)) {
+    Judgement j{claim,
+                {unknown, 0},
+                unknown,
+                claim.verdict.empty() ? "not reproducible as stated" : claim.verdict,
+                {}};
+    try {
+      if (!claim.ours.empty()) {
+        j.ours = evaluate_with_braces(
+            claim.ours, [&](const std::string& name) { return find(name, rows, curves, j.points); });
+        j.difference_pct = 100 * (j.ours.value / claim.reference - 1);
+        j.verdict = !std::isfinite(j.ours.value)      ? "not run"
+                    : !std::isfinite(claim.reference) ? "told"
+                    : agrees(j)                       ? "agrees"
+                                                      : "differs";
+      }
+    } catch (const InputError& error) {
+      problems.push_back(fmt::format("{}: claim {}: {}", file.string(), claim.id, error.what()));
+    }
+    all.push_back(std::move(j));
+  }
+  if (!problems.empty()) throw InputError(problems);
+  return all;
+}
+
+std::string claims_csv(const std::vector<Judgement>& judged) {
+  std::string text =
+      "id,quantity,class,place,claim,unit,reference,uncertainty,ours,ours_stderr,difference_pct,verdict,why\n";
+  for (const auto& j : judged)
+    text +=
+        fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", quoted(j.claim.id), quoted(j.claim.quantity),
+                    quoted(j.claim.kind), quoted(j.claim.place), quoted(j.claim.text), quoted(j.claim.unit),
+                    cell(j.claim.reference, 6), cell(j.claim.uncertainty, 3), cell(j.ours.value, 6),
+                    cell(j.ours.error, 2), cell(j.difference_pct, 3), j.verdict, quoted(j.claim.why));
+  return text;
+}
+
+std::string with_error(const Measured& m) {
+  if (!std::isfinite(m.value)) return "";
+  if (!std::isfinite(m.error) || m.error <= 0) return fmt::format("{:.4g}", m.value);
+  const int digits = 1 - static_cast<int>(std::floor(std::log10(m.error)));
+  if (digits < 0) return fmt::format("{:.0f} ± {:.0f}", m.value, m.error);
+  if (digits > 6 && std::abs(m.value) < 1e-3) return fmt::format("{:.4g} ± {:.2g}", m.value, m.error);
+  return fmt::format("{:.{}f} ± {:.{}f}", m.value, digits, m.error, digits);
+}
+
+std::vector<QuantityBias> biases(const std::vector<Judgement>& judged) {
+  std::vector<QuantityBias> all;
+  for (const auto& j : judged) {
+    if (!std::isfinite(j.difference_pct)) continue;
+    auto at =
+        std::find_if(all.begin(), all.end(), [&](const auto& q) { return q.quantity == j.claim.quantity; });
+    if (at == all.end()) at = all.insert(all.end(), {j.claim.quantity, 0, 0, 0});
+    ++at->count;
+    at->bias_pct += j.difference_pct;
+    at->sigma_pct += j.difference_pct * j.difference_pct;
+  }
+  for (auto& q : all) {
+    const auto n = static_cast<double>(q.count);
+    q.bias_pct /= n;
+    q.sigma_pct =
+        n > 1 ? std::sqrt(std::max(0.0, (q.sigma_pct - n * q.bias_pct * q.bias_pct) / (n - 1))) : unknown;
+  }
+  return all;
+}
+
+}  // namespace granrad

@@ -1,0 +1,301 @@
+#include "coupling/study/study_page.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "coupling/simulation/history.h"
+#include "coupling/study/csv_cells.h"
+#include "dem/base/error.h"
+#include "dem/page/html_report.h"
+
+namespace granrad {
+
+namespace {
+
+constexpr int curve_points = 120;
+
+std::string of_key(const StudyRow& row, const std::string& key) {
+  for (auto one = row.of->varied.rbegin(); one != row.of->varied.rend(); ++one)
+    if (one->first == key) return one->second;
+  return "";
+}
+
+/// particles.csv of a validation: the column at the last time, by source.
+std::map<std::string, std::vector<double>> last_particle_values(const std::filesystem::path& file,
+                                                                const std::string& column) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  const auto names = csv_cells(line);
+  const auto at = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  };
+  const std::size_t source = at("source"), time = at("time_s"), value = at(column);
+  std::map<std::string, std::vector<double>> values;
+  double last = 0;
+  while (std::getline(in, line)) {
+    const auto cells = csv_cells(line);
+    if (std::max({source, time, value}) >= cells.size()) continue;
+    const double t = std::strtod(cells[time].c_str(), nullptr);
+    if (t > last) values.clear(), last = t;
+    if (t == last) values[cells[source]].push_back(std::strtod(cells[value].c_str(), nullptr));
+  }
+  return values;
+}
+
+Series& series(Chart& chart, const std::string& label) {
+  for (auto& one : chart.series)
+    if (one.label == label) return one;
+  chart.series.push_back({.label = label, .x = {}, .y = {}, .error = {}, .points = true});
+  return chart.series.back();
+}
+
+void add_curve(Chart& chart, const std::string& label, const std::string& formula, double low, double high,
+               bool log_x) {
+  Series line{.label = label, .x = {}, .y = {}, .error = {}};
+  for (int k = 0; k <= curve_points; ++k) {
+    const double part = static_cast<double>(k) / curve_points;
+    const double x = log_x ? low * std::pow(high / low, part) : low + part * (high - low);
+    line.x.push_back(x);
+    line.y.push_back(evaluate(formula, {{"x", {x, 0}}}).value);
+  }
+  chart.series.push_back(line);
+}
+
+std::pair<double, double> range_of(const Chart& chart) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const auto& one : chart.series)
+    for (double x : one.x) low = std::min(low, x), high = std::max(high, x);
+  return {low, high};
+}
+
+/// Lines over time, of the first case of each point.
+void add_history(HtmlReport& page, const StudyFigure& figure, const StudyOutcome& outcome) {
+  Chart chart{.title = figure.title,
+              .x_label = figure.x_label,
+              .y_label = figure.y_label,
+              .series = {},
+              .log_x = figure.log_x,
+              .log_y = figure.log_y};
+  for (const auto& point : figure.history)
+    for (const auto& row : outcome.rows) {
+      if (row.of->point != point || row.finished == 0 || row.of->kind != StudyKind::run) continue;
+      const auto history = read_history(outcome.folder / row.of->name / "history.csv");
+      for (const auto& name : figure.y)
+        if (history.count(name) && history.count(figure.x))
+          chart.series.push_back({.label = figure.y.size() > 1 ? point + ", " + name : point,
+                                  .x = history.at(figure.x),
+                                  .y = history.at(name),
+                                  .error = {}});
+    }
+  if (!chart.series.empty()) page.chart(chart);
+}
+
+/// Distributions over the particles at the last instant of a validation, by source.
+void add_particles(HtmlReport& page, const StudyFigure& figure, const StudyOutcome& outcome) {
+  for (const auto& point : figure.particles)
+    for (const auto& row : outcome.rows) {
+      const auto file = outcome.folder / row.of->name / "particles.csv";
+      if (row.of->point != point || row.finished == 0 || !std::filesystem::exists(file)) continue;
+      std::vector<std::pair<std::string, std::vector<double>>> samples;
+      for (auto& [source, values] : last_particle_values(file, figure.x))
+        samples.emplace_back(source, values);
+      if (!samples.empty())
+        page.histogram(fmt::format("{} ({})", figure.title, point), figure.x_label, samples);
+    }
+}
+
+void add_figure(HtmlReport& page, const StudyFigure& figure, const StudyOutcome& outcome) {
+  if (!figure.history.empty()) return add_history(page, figure, outcome);
+  if (!figure.particles.empty()) return add_particles(page, figure, outcome);
+  Chart chart{.title = figure.title,
+              .x_label = figure.x_label,
+              .y_label = figure.y_label,
+              .series = {},
+              .log_x = figure.log_x,
+              .log_y = figure.log_y};
+  for (const auto& row : outcome.rows) {
+    const auto& groups = figure.groups;
+    if (!groups.empty() && std::find(groups.begin(), groups.end(), row.of->group) == groups.end()) continue;
+    const auto x = row.quantity.find(figure.x);
+    if (x == row.quantity.end() || row.finished == 0) continue;
+    for (const auto& name : figure.y) {
+      const auto y = row.quantity.find(name);
+      if (y == row.quantity.end() || !std::isfinite(y->second.value)) continue;
+      std::string label = figure.y.size() > 1 ? name : "";
+      if (groups.size() > 1) label += (label.empty() ? "" : ", ") + row.of->group;
+      if (!figure.by.empty())
+        label += fmt::format("{}{} = {}", label.empty() ? "" : ", ", figure.by, of_key(row, figure.by));
+      auto& line = series(chart, label.empty() ? "this study" : label);
+      line.x.push_back(x->second.value);
+      line.y.push_back(y->second.value);
+      line.error.push_back(std::isfinite(y->second.error) ? y->second.error : 0);
+    }
+  }
+  if (chart.series.empty()) return;
+  const auto [low, high] = range_of(chart);
+  for (const auto& curve : figure.curves)
+    add_curve(chart, curve.label, curve.formula, low, high, figure.log_x);
+  page.chart(chart);
+  if (!figure.text.empty()) page.paragraph(figure.text);
+}
+
+/// Without figures of its own a study shows what people look for first against every key that is a number.
+std::vector<StudyFigure> usual_figures(const StudyOutcome& outcome) {
+  std::vector<StudyFigure> all;
+  std::set<std::string> keys;
+  for (const auto& row : outcome.rows)
+    for (const auto& [key, value] : row.of->varied)
+      if (row.quantity.count(key) && keys.insert(key).second) {
+        StudyFigure figure;
+        figure.title = "Wall-to-particle coefficients against " + key;
+        figure.x = figure.x_label = key;
+        figure.y = {"h_wp_W_m2K", "h_ss_W_m2K", "h_sfs_W_m2K", "h_rad_W_m2K"};
+        figure.y_label = "h, W/(m² K)";
+        all.push_back(figure);
+      }
+  return all;
+}
+
+void add_claims(HtmlReport& page, const StudyOutcome& outcome) {
+  if (outcome.judged.empty()) return;
+  std::size_t agree = 0, differ = 0, not_possible = 0, told = 0;
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& j : outcome.judged) {
+    agree += j.verdict == "agrees";
+    differ += j.verdict == "differs";
+    not_possible += j.verdict.starts_with("not reproducible");
+    told += j.verdict == "told";
+    rows.push_back(
+        {j.claim.id, j.claim.place, j.claim.text,
+         std::isfinite(j.claim.reference) ? with_error({j.claim.reference, j.claim.uncertainty}) : "",
+         with_error(j.ours), j.claim.unit,
+         std::isfinite(j.difference_pct) ? fmt::format("{:+.1f} %", j.difference_pct) : "", j.verdict,
+         j.verdict == "agrees" ? "" : j.claim.why});
+  }
+  page.heading("Every number beside ours");
+  page.paragraph(
+      fmt::format("{} numbers: {} agree, {} differ, {} cannot be reproduced as stated, {} are told beside "
+                  "a statement without a number.",
+                  rows.size(), agree, differ, not_possible, told));
+  page.table({"", "place", "claim", "reference", "ours", "unit", "difference", "verdict", "why"}, rows);
+}
+
+void add_fits(HtmlReport& page, const StudyOutcome& outcome) {
+  if (outcome.curves.empty()) return;
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& curve : outcome.curves) {
+    std::string coefficients;
+    for (const auto& [name, c] : curve.coefficient)
+      if (name != "R2")
+        coefficients += fmt::format("{}{} = {}", coefficients.empty() ? "" : ", ", name, with_error(c));
+    const auto r2 = curve.coefficient.find("R2");
+    rows.push_back({curve.of.name, curve.of.y, curve.problem.empty() ? curve.formula : curve.problem,
+                    coefficients,
+                    r2 == curve.coefficient.end() ? "" : fmt::format("{:.4f}", r2->second.value),
+                    fmt::format("{}", curve.points)});
+  }
+  page.heading("Fitted curves");
+  page.table({"fit", "of", "formula of x", "coefficients", "R²", "points"}, rows);
+}
+
+void add_points(HtmlReport& page, const StudyOutcome& outcome) {
+  page.heading("Every case");
+  std::vector<std::string> names;
+  for (const char* name : {"h_wp_W_m2K", "Nu_d", "share_rad_pct", "mean_temperature_K", "solid_fraction"})
+    if (std::any_of(outcome.rows.begin(), outcome.rows.end(),
+                    [&](const auto& r) { return r.quantity.count(name); }))
+      names.push_back(name);
+  std::vector<std::string> header = {"case", "status", "seeds"};
+  header.insert(header.end(), names.begin(), names.end());
+  header.push_back("seconds");
+  std::vector<std::vector<std::string>> table;
+  for (const auto& row : outcome.rows) {
+    std::vector<std::string> line = {row.of->point, row.status(), fmt::format("{}", row.finished)};
+    for (const auto& name : names) {
+      const auto found = row.quantity.find(name);
+      line.push_back(found == row.quantity.end() ? "" : with_error(found->second));
+    }
+    line.push_back(fmt::format("{:.3g}", row.seconds));
+    table.push_back(line);
+  }
+  page.table(header, table);
+  for (const auto& row : outcome.rows)
+    for (const auto& record : row.records)
+      if (record.status == "failed")
+        page.paragraph(fmt::format("{} failed: {}", row.of->point, record.message));
+}
+
+std::string md_cell(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '|' ? std::string("\\|") : std::string(1, c);
+  return out;
+}
+
+}  // namespace
+
+void write_study_page(const std::filesystem::path& file, const StudyOutcome& outcome) {
+  HtmlReport page(outcome.study.title);
+  double seconds = 0;
+  std::size_t finished = 0;
+  for (const auto& row : outcome.rows) seconds += row.seconds, finished += row.status() == "finished";
+  page.paragraph(
+      fmt::format("{} of {} points finished, {:.0f} s of computing. Errors are standard errors: of the "
+                  "scatter between seeds where there are several, else of batches in time.",
+                  finished, outcome.rows.size(), seconds));
+  const auto figures = outcome.study.figures.empty() ? usual_figures(outcome) : outcome.study.figures;
+  for (const auto& figure : figures) add_figure(page, figure, outcome);
+  add_claims(page, outcome);
+  add_fits(page, outcome);
+  add_points(page, outcome);
+  page.write(file);
+}
+
+std::string claims_book(const StudyOutcome& outcome) {
+  bool whole = true;
+  for (const auto& row : outcome.rows) whole = whole && row.status() == "finished";
+  const std::string stem = outcome.study.file.stem().string();
+  std::string text = fmt::format("# {}\n\n", outcome.study.title);
+  text += fmt::format(
+      "Written by `granrun study data/studies/{}.toml -o out/{} --book FILE` ({}) from `{}`; a second run gives the "
+      "same. {}Class: **A** exact or by quadrature, **E** experiment, **P** published computation or fit, **R** another "
+      "program. *agrees*: within the tolerance stated, or where none is stated within two standard errors of ours and "
+      "the reference together. Failures stay in the table.\n\n",
+      stem, stem, stem == "validation" ? "`./do validate`" : "`./do paper`",
+      outcome.study.claims.filename().string(),
+      whole ? "" : "**A part of the study**: numbers of cases that were not run say so. ");
+  text +=
+      "| | quantity | case | class | ours | reference | bias | verdict |\n|---|---|---|---|---|---|---|---|\n";
+  for (const auto& j : outcome.judged)
+    text += fmt::format(
+        "| {} | {} | {} | {} | {} {} | {} | {} | {}{} |\n", j.claim.id, md_cell(j.claim.quantity),
+        md_cell(j.claim.text), j.claim.kind, with_error(j.ours), j.claim.unit,
+        std::isfinite(j.claim.reference) ? with_error({j.claim.reference, j.claim.uncertainty}) : "",
+        std::isfinite(j.difference_pct) ? fmt::format("{:+.2f} %", j.difference_pct) : "",
+        j.verdict == "differs" ? "**differs**" : j.verdict,
+        j.claim.tolerance_pct > 0 ? fmt::format(" (≤ {:g} %)", j.claim.tolerance_pct) : "");
+  text += "\n## Bias and scatter by quantity\n\n| quantity | numbers | bias | σ |\n|---|---|---|---|\n";
+  for (const auto& q : biases(outcome.judged))
+    text += fmt::format("| {} | {} | {:+.2f} % | {} |\n", md_cell(q.quantity), q.count, q.bias_pct,
+                        std::isfinite(q.sigma_pct) ? fmt::format("{:.2f} %", q.sigma_pct) : "");
+  text += "\n## Notes, and the command that makes each number\n\n";
+  for (const auto& j : outcome.judged) {
+    text += fmt::format("- **{}** {} {}", j.claim.id, j.claim.place, j.claim.why);
+    std::set<std::string> told;
+    for (const auto& point : j.points)
+      if (told.insert(point).second)
+        text +=
+            fmt::format(" `granrun study data/studies/{} -o out/{} --case {}`.",
+                        outcome.study.file.filename().string(), outcome.study.file.stem().string(), point);
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace granrad

@@ -1,0 +1,168 @@
+#include "coupling/study/study_results.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "coupling/granrun/results.h"
+#include "coupling/simulation/case_folder.h"
+#include "coupling/study/csv_cells.h"
+#include "dem/base/error.h"
+
+namespace granrad {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+Quantities of_run(const fs::path& folder) {
+  Quantities all;
+  const Results results = summarise(read_history(folder / "history.csv"));
+  for (const auto& [name, average] : results.column) all[name] = {average.mean, average.standard_error};
+  all["energy_defect_max"] = {results.largest_energy_defect, 0};
+  all["final_mean_temperature_K"] = {results.final_mean_temperature_K, 0};
+  const auto derive = [&](const std::string& name, const std::string& formula) {
+    if (!all.count(name)) all[name] = evaluate(formula, all);
+  };
+  derive("Nu_ss", "Nu_d * h_ss_W_m2K / h_wp_W_m2K");
+  derive("Nu_sfs", "Nu_d * h_sfs_W_m2K / h_wp_W_m2K");
+  derive("Nu_rad", "Nu_d * h_rad_W_m2K / h_wp_W_m2K");
+  derive("Nu_cond", "Nu_d * (h_ss_W_m2K + h_sfs_W_m2K) / h_wp_W_m2K");
+  derive("share_ss_pct", "100 * h_ss_W_m2K / h_wp_W_m2K");
+  derive("share_sfs_pct", "100 * h_sfs_W_m2K / h_wp_W_m2K");
+  derive("share_rad_pct", "100 * h_rad_W_m2K / h_wp_W_m2K");
+  return all;
+}
+
+/// One quantity for each number of validation.csv, by source and time.
+Quantities of_validation(const fs::path& folder) {
+  Quantities all;
+  std::stringstream text(read_text_file(folder / "validation.csv"));
+  std::string line;
+  std::getline(text, line);
+  const auto names = csv_cells(line);
+  while (std::getline(text, line)) {
+    const auto cells = csv_cells(line);
+    std::string source, time, rays;
+    for (std::size_t k = 0; k < std::min(cells.size(), names.size()); ++k) {
+      if (names[k] == "source") source = cells[k];
+      if (names[k] == "time_s") time = cells[k];
+    }
+    for (std::size_t k = 0; k < std::min(cells.size(), names.size()); ++k) {
+      char* end = nullptr;
+      const double value = std::strtod(cells[k].c_str(), &end);
+      if (end != cells[k].c_str()) all[fmt::format("{}@{}:{}", source, time, names[k])] = {value, 0};
+    }
+  }
+  return all;
+}
+
+void flatten(const nlohmann::json& json, const std::string& name, Quantities& all) {
+  if (json.is_number()) all[name] = {json.get<double>(), 0};
+  if (json.is_object())
+    for (const auto& [key, value] : json.items()) flatten(value, name.empty() ? key : name + "." + key, all);
+}
+
+Quantities of_json(const fs::path& file) {
+  const auto json = nlohmann::json::parse(read_text_file(file), nullptr, false);
+  if (!json.is_object()) throw IoError(fmt::format("{}: is no JSON object", file.string()));
+  Quantities all;
+  flatten(json, "", all);
+  for (auto& [name, measured] : all)
+    if (const auto error = all.find(name + "_error"); error != all.end())
+      measured.error = error->second.value;
+  return all;
+}
+
+Quantities of_case(const StudyCase& one, const fs::path& folder) {
+  switch (one.kind) {
+    case StudyKind::run:
+      return of_run(folder);
+    case StudyKind::validate:
+      return of_validation(folder);
+    case StudyKind::measure:
+      return of_json(folder / "measure.json");
+    case StudyKind::command:
+      return fs::exists(folder / "results.json") ? of_json(folder / "results.json") : Quantities{};
+    case StudyKind::trace:
+    case StudyKind::fit:
+      break;
+  }
+  return {};
+}
+
+Quantities averaged(const std::vector<Quantities>& replicates) {
+  if (replicates.size() == 1) return replicates.front();
+  Quantities all;
+  const auto n = static_cast<double>(replicates.size());
+  for (const auto& [name, first] : replicates.front()) {
+    double sum = 0, squares = 0;
+    for (const auto& one : replicates) sum += one.count(name) ? one.at(name).value : unknown;
+    for (const auto& one : replicates)
+      squares += one.count(name) ? std::pow(one.at(name).value - sum / n, 2) : unknown;
+    all[name] = {sum / n, std::sqrt(squares / (n * (n - 1)))};
+  }
+  return all;
+}
+
+void add_varied(StudyRow& row) {
+  for (const auto& [key, value] : row.of->varied) {
+    char* end = nullptr;
+    const double number = std::strtod(value.c_str(), &end);
+    if (end != value.c_str() && *end == '\0') row.quantity[key] = {number, 0};
+  }
+}
+
+/// Cases of another kind may lack what the formula needs; a formula that suits no case is wrong.
+void add_column(const StudyColumn& column, std::vector<StudyRow>& rows) {
+  std::string problem;
+  bool any = false;
+  for (auto& row : rows) {
+    if (row.finished == 0) continue;
+    try {
+      row.quantity[column.name] = evaluate(column.formula, row.quantity);
+      any = true;
+    } catch (const InputError& error) {
+      problem = error.what();
+    }
+  }
+  if (!any && !problem.empty()) throw InputError(fmt::format("[[column]] {}: {}", column.name, problem));
+}
+
+}  // namespace
+
+std::string StudyRow::status() const {
+  std::string worst = records.empty() ? "skipped" : "finished";
+  for (const auto& record : records)
+    if (record.status != "finished" && worst != "failed") worst = record.status;
+  return worst;
+}
+
+std::vector<StudyRow> collect(const Study& study, const fs::path& folder) {
+  std::vector<StudyRow> rows;
+  for (const auto& one : study.cases) {
+    if (!rows.empty() && rows.back().of->point == one.point) continue;
+    StudyRow row{&one, {}, 0, 0, {}};
+    std::vector<Quantities> replicates;
+    for (const auto* replicate : study.of_point(one.point)) {
+      if (replicate->skipped) continue;
+      row.records.push_back(read_case_record(place_of(folder, *replicate).record));
+      row.seconds += row.records.back().seconds;
+      if (row.records.back().status == "finished")
+        replicates.push_back(of_case(*replicate, folder / replicate->name));
+    }
+    row.finished = static_cast<int>(replicates.size());
+    if (row.finished > 0) row.quantity = averaged(replicates);
+    add_varied(row);
+    rows.push_back(std::move(row));
+  }
+  for (const auto& column : study.columns) add_column(column, rows);
+  return rows;
+}
+
+}  // namespace granrad
