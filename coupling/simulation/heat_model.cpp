@@ -45,7 +45,7 @@ const Conductances& HeatModel::conduct(const Bed& bed, Flow& flow) {
   if (!settings.solid && !settings.gas) return conductances_;
   if (conductances_known_ && !flow.moves()) return conductances_;
   const double largest = bed.size() ? *std::max_element(bed.radius_m.begin(), bed.radius_m.end()) : 0;
-  const auto touches = settings.solid ? flow.touches(bed) : std::nullopt;
+  const auto touches = settings.solid && !settings.rough ? flow.touches(bed) : std::nullopt;
   const bool needs_pairs = !touches || settings.gas;
   conductances_ = conductances(
       bed, needs_pairs ? flow.near_pairs(bed, lens_cutoff_gap_m(settings, largest)) : NearPairs{}, settings,

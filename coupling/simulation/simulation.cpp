@@ -62,7 +62,7 @@ std::string outside_note(const Scene& scene, const Bed& bed) {
 
 Simulation::Simulation(const Case& c, int threads)
     : case_(c), flow_(c.flow, threads), heat_(c, threads), recorder_(c) {
-  flow_.record_touches(c.heat.conduction.solid);
+  flow_.record_touches(c.heat.conduction.solid && !c.heat.conduction.rough);
 }
 
 void Simulation::start(Bed bed) {
