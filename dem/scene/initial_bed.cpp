@@ -117,7 +117,7 @@ void refuse_particles_behind_walls(const Scene& scene, const Bed& bed) {
   if (count > 0)
     throw InputError(
         fmt::format("{}: {} particles lie outside the walls of the box, ids {}{} (their centres are behind "
-                    "a wall) enlarge [box], or remove them from the file",
+                    "a wall); enlarge [box], or remove them from the file",
                     scene.particle_file.string(), count, fmt::join(outside, ", "),
                     count > examples_shown ? ", ..." : ""));
 }
@@ -144,7 +144,7 @@ void refuse_deep_overlaps(const Scene& scene, const Bed& bed) {
   if (count > 0)
     throw InputError(fmt::format(
         "{}: {} pairs overlap by more than a tenth of a radius, ids {}{} (the contact law "
-        "would throw them apart) check the radius and the unit of length",
+        "would throw them apart); check the radius and the unit of length",
         scene.particle_file.string(), count, fmt::join(pairs, ", "), count > examples_shown ? ", ..." : ""));
 }
 

@@ -28,12 +28,14 @@ struct Job {
 /// One job a file, or one a snapshot of each with --step all.
 std::vector<Job> snapshots_to_trace(const TraceCommand& command) {
   std::vector<Job> jobs;
-  for (const auto& file : command.snapshots)
-    if (!command.every_step)
+  for (const auto& file : command.snapshots) {
+    if (!command.every_step) {
       jobs.push_back({file, command.enclosure.which});
-    else
-      for (const std::int64_t step : SnapshotFile(file, command.enclosure.radius_m).steps())
-        jobs.push_back({file, {SnapshotChoice::Kind::step, step}});
+      continue;
+    }
+    const SnapshotFile all(file, command.enclosure.radius_m);
+    for (const std::int64_t step : all.steps()) jobs.push_back({file, {SnapshotChoice::Kind::step, step}});
+  }
   return jobs;
 }
 

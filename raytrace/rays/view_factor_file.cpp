@@ -276,11 +276,11 @@ ExchangeAreas read_closed(const Hdf5Reader& in, const std::vector<double>& area_
 
 void check_format(const Hdf5Reader& in, const std::string& file) {
   if (!in.has_attribute("/", "format") || in.text_attribute("/", "format") != format_name)
-    throw InputError(fmt::format("{}: not a view-factor file (no format = \"{}\") make one with vfgen trace",
+    throw InputError(fmt::format("{}: not a view-factor file (no format = \"{}\"); make one with vfgen trace",
                                  file, format_name));
   if (const auto version = in.integer_attribute("/", "version"); version != view_factor_version)
     throw InputError(
-        fmt::format("{}: version = {} (this program reads {}) {}", file, version, view_factor_version,
+        fmt::format("{}: version = {} (this program reads {}); {}", file, version, view_factor_version,
                     version > view_factor_version ? "use a newer program" : "trace the snapshot again"));
 }
 

@@ -71,6 +71,33 @@ TEST_F(Vfgen, ExplainsItself) {
   expect_says(vfgen("--version"), 0, "vfgen 0.1.0");
 }
 
+std::string dump_snapshot(int step, double z) {
+  return "ITEM: TIMESTEP\n" + std::to_string(step) +
+         "\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\nITEM: ATOMS id x y z radius\n1 0.5 0.5 " +
+         std::to_string(z) + " 0.1\n";
+}
+
+TEST_F(Vfgen, TracesTheSnapshotsThatAreChosen) {
+  const auto dump =
+      write("three.dump", dump_snapshot(10, 0.2) + dump_snapshot(20, 0.4) + dump_snapshot(30, 0.6));
+  const auto traced_z = [&](const std::string& file) {
+    return granrad::read_view_factors(path(file)).enclosure.centre_m[0].z;
+  };
+  const std::string trace = "trace " + dump + " --box 1,1,1 --rays 10 -q -o ";
+  EXPECT_EQ(vfgen(trace + path("last.h5")).code, 0);
+  EXPECT_EQ(traced_z("last.h5"), 0.6);
+  EXPECT_EQ(vfgen(trace + path("first.h5") + " --step first").code, 0);
+  EXPECT_EQ(traced_z("first.h5"), 0.2);
+  EXPECT_EQ(vfgen(trace + path("all.h5") + " --step all").code, 0);
+  EXPECT_EQ(traced_z("all_0002.h5"), 0.4);
+  expect_says(vfgen(trace + path("x.h5") + " --step 15"), 2, "holds no step 15; there are 10, 20, 30");
+  expect_says(vfgen(trace + path("x.h5") + " --step some"), 2, "try first, last or all");
+  expect_says(vfgen(trace + path("x.h5") + " --radius 0.2"), 2, "has radii of its own; drop --radius");
+  const auto cut = write("cut.dump", dump_snapshot(10, 0.2) + dump_snapshot(20, 0.4).substr(0, 90));
+  expect_says(vfgen("trace " + cut + " --box 1,1,1 --rays 10 -o " + path("x.h5")), 0,
+              "the last snapshot is not whole");
+}
+
 TEST_F(Vfgen, RefusesBadUsageWithCode2) {
   const auto csv = two_spheres();
   expect_says(vfgen(""), 2, "subcommand");

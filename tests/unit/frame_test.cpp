@@ -1,7 +1,11 @@
 // A frame read back is the bed that was written, bit for bit; a damaged or foreign file is refused.
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+
 #include <cmath>
+#include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -198,6 +202,25 @@ TEST_F(Frame, NothingIsWrittenOfAStateThatIsNotFinite) {
   EXPECT_THROW(write_frame(folder_ / "f.hdf", bed, {}), NumericalError);
   EXPECT_TRUE(fs::is_empty(folder_.path()));
   EXPECT_THROW(write_frame(folder_.path() / "missing" / "f.hdf", random_bed(3), {}), IoError);
+}
+
+/// The process that wrote to a disk that was full ends as it wants to. Planted and caught: without H5dont_atexit it
+/// ends in the library's cleanup, by SIGSEGV.
+TEST_F(Frame, AFullDiskIsAnErrorAndNoCrash) {
+  const auto write_with_little_room = [&] {
+    constexpr rlim_t room = 40000;
+    const rlimit limit{room, room};
+    std::signal(SIGXFSZ, SIG_IGN);
+    setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      write_frame(folder_ / "f.hdf", random_bed(20000), {});
+    } catch (const IoError&) {
+      std::exit(3);
+    }
+    std::exit(0);
+  };
+  EXPECT_EXIT(write_with_little_room(), testing::ExitedWithCode(3), "");
+  EXPECT_FALSE(fs::exists(folder_ / "f.hdf"));
 }
 
 TEST_F(Frame, ACrashedWriteLeavesTheOldFrame) {
