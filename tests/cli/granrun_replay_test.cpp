@@ -1,8 +1,8 @@
 // Requirement: heats on a recorded flow are those of the flow itself, as far as its snapshots tell: the same flow run
 // coupled and replayed from its frames agrees within the scatter of the rows; who came and who left is counted, the
 // ledger closes, a stopped replay goes on with the same bits, and dumps of the frames replay as the frames do.
-// Planted and caught: particles matched by place instead of id (ledger, temperature), arrivals not counted (ledger),
-// the snapshot of half an interval earlier (mass flows), temperatures taken from the recording (the ledger).
+// Planted and caught: heat of arrivals not counted (ledger), particles that stay found by the next id (mass flows), the
+// snapshot before instead of the nearest (mass flows).
 #include <algorithm>
 #include <cmath>
 

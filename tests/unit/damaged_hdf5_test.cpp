@@ -1,6 +1,5 @@
 // HDF5 files whose content may be anything are refused with a reason, before an index, a length or an offset of
 // theirs is used: view-factor files byte by byte and set by set, and the variable-length texts of older files.
-// Planted and caught: no check of the columns of a row (address sanitizer), of the parts of walls (a crash).
 #include <gtest/gtest.h>
 #include <hdf5.h>
 

@@ -1,7 +1,7 @@
 // Particles come in as other programs write them: names of columns that are nearly ours, several snapshots in a
 // file, files that are being written, XYZ, VTK, gzip; and what our exports wrote comes back as it was.
-// Planted and caught: a component of v taken for another; type taken for material; the cut snapshot read; legacy
-// binary read in the machine's byte order; blocks of a packed array in the wrong order of header.
+// Made to see: a component of v taken for another; type taken for material; the cut snapshot read; legacy binary read in
+// the byte order of the machine; the parts of a packed array in another order.
 #include <gtest/gtest.h>
 
 #include <bit>
