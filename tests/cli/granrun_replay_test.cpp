@@ -1,8 +1,8 @@
 // Requirement: heats on a recorded flow are those of the flow itself, as far as its snapshots tell: the same flow run
 // coupled and replayed from its frames agrees within the scatter of the rows; who came and who left is counted, the
 // ledger closes, a stopped replay goes on with the same bits, and dumps of the frames replay as the frames do.
-// Planted and caught: heat of arrivals not counted (ledger), particles that stay found by the next id (mass flows), the
-// snapshot before instead of the nearest (mass flows).
+// Planted and caught: heat of arrivals not counted (ledger); particles that stay found by the next id while the snapshot
+// before is taken for the nearest (counts, mass flows).
 #include <algorithm>
 #include <cmath>
 
