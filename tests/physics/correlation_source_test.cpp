@@ -144,7 +144,6 @@ TEST(CorrelationSource, RefusesWhatATableCannotServe) {
 }
 
 // A lone sphere and six walls: the exact factors to the walls add up to 1, and the table holds none above.
-// Planted error: the bound of the wall 1/2 -> 1.4 near a corner.
 TEST(CorrelationSource, GivesALoneSphereNoMoreThanOne) {
   Enclosure lone;
   const Box box{{0, 0, 0}, {0.010, 0.004, 0.012}};

@@ -107,8 +107,7 @@ TEST(Correlation, InterpolatesCubicsLinearly) {
   EXPECT_NEAR(low.pp(1.7), Correlation(table, 0.25 + 1e-9).pp(1.7), 1e-9);
 }
 
-// ln a and b linear in logit(phi): by hand at the middle of 0.2 and 0.4. Planted error: linear in phi -> a =
-// 0.45 at 0.3.
+// ln a and b linear in logit(phi): by hand at the middle of 0.2 and 0.4. Planted error: linear in phi.
 TEST(Correlation, InterpolatesTransmittancesInTheLogit) {
   const auto table = transmittance();
   const auto logit = [](double p) { return std::log(p / (1 - p)); };
@@ -121,7 +120,7 @@ TEST(Correlation, InterpolatesTransmittancesInTheLogit) {
 }
 
 // Below the first row: the empty box at 0, the row at its own solid fraction, continuous and falling between.
-// Planted error: the first row held below itself -> 0.7 of the exact factor at 0.
+// Planted error: the first row held below itself.
 TEST(Correlation, GoesToTheExactFactorsBelowTheFirstRow) {
   for (const auto& table : {printed(), transmittance()}) {
     const double first = table.rows[0].solid_fraction;
@@ -158,7 +157,7 @@ TEST(Correlation, ServesFivePercentBeyondItsEndWithTheLastRow) {
 }
 
 // A million random arguments, every table and solid fraction: nothing beyond the bounds. Planted error: the
-// bound of the wall 1/2 instead of its own factor -> one in forty beyond.
+// bound of the wall 1/2 instead of its own factor.
 TEST(Correlation, StaysWithinTheBoundsOfEveryArgument) {
   int beyond = 0;
   std::uint64_t k = 0;

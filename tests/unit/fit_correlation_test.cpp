@@ -131,7 +131,7 @@ Eigen::Vector4d by_qr(const DistanceSamples& s) {
 }
 
 // To 1e-9 of the coefficient or 1e-4 of its error, at the paper's reach of 20 d where the powers are nearly
-// dependent. Planted error: every second sample left out -> off by a standard error.
+// dependent.
 TEST(CubicFit, FindsWhatQrFinds) {
   for (const double reach : {4.0, 10.0, 20.0}) {
     const auto s = sampled(60000, 1, reach, 1e-3, 17, false, cubic);
@@ -170,8 +170,7 @@ double coverage(std::size_t snapshots, int seeds) {
   return covered / (4.0 * seeds);
 }
 
-// 95 % intervals cover 93 to 97 % of 400 seeds when snapshots share errors. Planted errors: samples taken as
-// independent -> 45 %; Student's quantile left out -> 85 % with four snapshots.
+// 95 % intervals cover 93 to 97 % of 400 seeds when snapshots share errors.
 TEST(StandardErrors, CoverAcrossSnapshotsLong) {
   for (const std::size_t snapshots : {4u, 8u}) {
     const double covered = coverage(snapshots, 400);

@@ -23,7 +23,7 @@ Enclosure packed(const Box& box, const Box& filled, double phi) {
   return bed;
 }
 
-// Planted error: windows of 5 d at every solid fraction -> 0.3 at 0.02, taken for a bed that is not uniform.
+// Planted error: windows of 5 d at every solid fraction -> deviations of 0.47 at 0.02 and 0.22 at 0.07.
 TEST(SolidFractionField, TakesAFilledBoxAsUniform) {
   const Box box{{0, 0, 0}, {12.5, 5, 30}};
   for (const double phi : {0.02, 0.07, 0.25, 0.43, 0.5}) {

@@ -38,7 +38,7 @@ TEST(SphereInBox, GivesTheKnownVolumes) {
 }
 
 // Planes at random places cut space into boxes: what they hold adds up to the sphere. Planted error: the sign
-// of one exterior angle in the octant -> off by a tenth of the sphere.
+// of one exterior angle in the octant.
 TEST(SphereInBox, PartsAddUpToTheWhole) {
   for (std::uint64_t k = 0; k < 2000; ++k) {
     const auto a = random_uniform2(3, 1, k), b = random_uniform2(3, 2, k);
