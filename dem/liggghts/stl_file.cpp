@@ -14,7 +14,7 @@ namespace granrad::liggghts {
 StlFile::StlFile(const std::vector<std::array<Vec3, 3>>& triangles)
     : path_((std::filesystem::temp_directory_path() / "granrad_mesh_XXXXXX.stl").string()) {
   const int handle = mkstemps(path_.data(), 4);
-  if (handle < 0) throw IoError(path_ + " (cannot be made) set TMPDIR to a folder that can be written");
+  if (handle < 0) throw IoError(path_ + " (cannot be made); set TMPDIR to a folder that can be written");
   close(handle);
   std::ofstream out(path_);
   out << "solid wall\n";
@@ -26,7 +26,7 @@ StlFile::StlFile(const std::vector<std::array<Vec3, 3>>& triangles)
   }
   out << "endsolid wall\n";
   out.close();
-  if (!out) throw IoError(path_ + " (cannot be written) set TMPDIR to a folder with space");
+  if (!out) throw IoError(path_ + " (cannot be written); set TMPDIR to a folder with space");
 }
 
 StlFile::~StlFile() {

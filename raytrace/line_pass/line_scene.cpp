@@ -198,7 +198,7 @@ double protrusion(const LineScene& scene, const Enclosure& e, std::vector<std::s
       if (distance < 0 && problems.size() < enough)
         problems.push_back(
             fmt::format("lines: particle {} at ({}, {}, {}) stands {} m behind wall {} (no line inside the "
-                        "walls meets it) try "
+                        "walls meets it); try "
                         "another region",
                         scene.surface[i], e.centre_m[at].x, e.centre_m[at].y, e.centre_m[at].z, -distance,
                         e.walls[static_cast<std::size_t>(face.surface) - scene.x.size()].name));

@@ -162,6 +162,27 @@ TEST(Layering, ThirdPartyHeadersStayInTheirFile) {
     }
 }
 
+// Messages read "cause; advice": in no literal does advice follow a closed reason without the semicolon.
+TEST(Layering, CauseAndAdviceAreJoinedByASemicolon) {
+  static const std::regex glued(
+      R"("[^"]*\) (try|use|add|make|give|choose|set|remove|raise|enlarge|check|sort|wait|install|lower|shorten)[ "])");
+  std::size_t literals = 0;
+  for (const auto& room : rooms)
+    for (const auto& entry : fs::recursive_directory_iterator(source_dir / room)) {
+      if (entry.path().extension() != ".cpp" && entry.path().extension() != ".h") continue;
+      std::ifstream in(entry.path());
+      std::size_t number = 0;
+      for (std::string line; std::getline(in, line);) {
+        ++number;
+        if (line.find('"') == std::string::npos || line.find_first_not_of(' ') == line.find("//")) continue;
+        ++literals;
+        EXPECT_FALSE(std::regex_search(line, glued) && line.find(") try {") == std::string::npos)
+            << entry.path() << ":" << number << ": join cause and advice by advised(): " << line;
+      }
+    }
+  EXPECT_GT(literals, 1000u);
+}
+
 TEST(Layering, NoOtherFolderHoldsCode) {
   for (const auto& entry : fs::directory_iterator(source_dir)) {
     const std::string name = entry.path().filename();
