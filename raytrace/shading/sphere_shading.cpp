@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "dem/bed/cell_grid.h"
+#include "dem/bed/wall_shape.h"
 #include "raytrace/embree/embree_tracer.h"
 #include "raytrace/facets.h"
 #include "raytrace/shading/beam_lines.h"
@@ -30,7 +31,7 @@ class WallShadows {
     Facets facets(1e-9 * norm(enclosure.box.size()));
     bool planar = true;
     for (std::size_t w = 0; w < enclosure.walls.size(); ++w) {
-      planar = planar && enclosure.walls[w].is_polygon();
+      planar = planar && plane_of(enclosure.walls[w]).has_value();
       facets.add(enclosure.walls[w], static_cast<std::int32_t>(w), {}, 1);
     }
     if (enclosure.walls.empty() || (planar && ConvexCell::from(facets))) return;

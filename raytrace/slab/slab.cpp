@@ -7,6 +7,7 @@
 
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
+#include "dem/bed/wall_shape.h"
 
 namespace granrad {
 
@@ -18,7 +19,7 @@ constexpr const char* plate_names[3][2] = {{"x_min", "x_max"}, {"y_min", "y_max"
 
 std::int32_t find_plate(const Enclosure& enclosure, const char* name) {
   for (std::size_t w = 0; w < enclosure.walls.size(); ++w)
-    if (enclosure.walls[w].name == name && enclosure.walls[w].is_polygon())
+    if (enclosure.walls[w].name == name && plane_of(enclosure.walls[w]))
       return static_cast<std::int32_t>(enclosure.sphere_count() + w);
   throw InputError(
       advised(fmt::format("there is no wall {} to be a plate", name), "give the box its walls there"));
