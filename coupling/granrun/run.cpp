@@ -103,6 +103,19 @@ int stop_requested(const RunOptions& options, Clock::time_point start) {
   return elapsed >= options.walltime_s ? exit_wall_time : 0;
 }
 
+/// One tick. What stops it names the way on: the frames before it are whole.
+void advance(Simulation& simulation) {
+  const double from_s = simulation.bed().time_s;
+  try {
+    simulation.advance();
+  } catch (const NumericalError& error) {
+    throw NumericalError(fmt::format(
+        "at {:g} s: {}\n  the last frame leads on with --resume --set KEY=VALUE (dem.step_s, radiation.every_s, "
+        "conduction.every_steps); particles that fall out of the scene are taken out by [[remove]]",
+        from_s, error.what()));
+  }
+}
+
 /// The time loop, from where the simulation stands to its end or until it must stop.
 int follow(Simulation& simulation, const Case& c, const CaseFolder& folder, const RunOptions& options,
            Clock::time_point start) {
@@ -115,7 +128,7 @@ int follow(Simulation& simulation, const Case& c, const CaseFolder& folder, cons
   HistoryRow row;
   while (!simulation.finished()) {
     if (plan.cuts(simulation.tick() + 1)) save(simulation, folder);  // where a longer run goes on
-    simulation.advance();
+    advance(simulation);
     if (plan.row_at(simulation.tick())) {
       const Record record = simulation.record();
       history.append(row = record.row);
