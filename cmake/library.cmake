@@ -27,11 +27,12 @@ foreach(room ${granrad_static_rooms})
 endforeach()
 add_library(granrad SHARED ${granrad_objects})
 add_library(granrad::granrad ALIAS granrad)
-target_link_libraries(granrad PRIVATE granrad_flags fmt::fmt hdf5::hdf5 ${UDUNITS2_LIBRARY} PNG::PNG embree Eigen3::Eigen Ceres::ceres)
+target_link_libraries(granrad PRIVATE granrad_flags fmt::fmt hdf5::hdf5 ${UDUNITS2_LIBRARY} PNG::PNG pugixml::pugixml ZLIB::ZLIB embree Eigen3::Eigen Ceres::ceres)
 if(GRANRAD_LIGGGHTS)
   target_link_libraries(granrad PRIVATE ${LIGGGHTS_LIBRARY} MPI::MPI_C)
 endif()
 target_include_directories(granrad INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/granrad>)
+target_link_options(granrad PRIVATE -Wl,--no-undefined)  # a room with a library that is not named here
 target_compile_features(granrad INTERFACE cxx_std_20)
 set_target_properties(granrad PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
   LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
