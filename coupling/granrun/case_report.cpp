@@ -209,7 +209,8 @@ int report_case(const std::filesystem::path& where, const RunOptions& options) {
   const RunRecord record = read_run_record(folder);
   HtmlReport page(record.scene_name);
   const bool has_rows = !history.at("time_s").empty();
-  const Results results = has_rows ? summarise(folder, read_case(folder.root() / "scene.toml", {})) : Results{};
+  const Results results =
+      has_rows ? summarise(folder, read_case(folder.root() / "scene.toml", {})) : Results{};
   if (has_rows) add_head(page, results, record);
   page.paragraph(fmt::format("Radiation: {}.", record.radiation));
   add_bed(page, folder);

@@ -9,8 +9,7 @@ namespace granrad {
 std::vector<std::size_t> hot_walls(const Bed& bed, const Box& region) {
   std::vector<std::size_t> walls;
   for (std::size_t w = 0; w < bed.walls.size(); ++w)
-    if (conducts(bed.walls[w]) && area_inside(bed.walls[w], region) > 0)
-      walls.push_back(w);
+    if (conducts(bed.walls[w]) && area_inside(bed.walls[w], region) > 0) walls.push_back(w);
   return walls;
 }
 

@@ -168,7 +168,8 @@ void HeatModel::load(const StateBlock& radiation, const StateBlock& ledger) {
 
 std::vector<char> in_region(const Bed& bed, const Box& region) {
   std::vector<char> inside(bed.size());
-  for (std::size_t i = 0; i < bed.size(); ++i) inside[i] = region.contains(wrapped_into_box(bed, bed.position_m[i]));
+  for (std::size_t i = 0; i < bed.size(); ++i)
+    inside[i] = region.contains(wrapped_into_box(bed, bed.position_m[i]));
   return inside;
 }
 

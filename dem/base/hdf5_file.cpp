@@ -393,8 +393,7 @@ std::string Hdf5Reader::text_attribute(const std::string& object, const std::str
     impl_->unexpected(fmt::format("attribute {} of {} must be a text", name, object));
   if (H5Tis_variable_str(type) > 0) {
     char* value = nullptr;
-    if (!Hdf5Heap(impl_->name).is_sound() || H5Aread(found, type, &value) < 0)
-      impl_->damaged(name);
+    if (!Hdf5Heap(impl_->name).is_sound() || H5Aread(found, type, &value) < 0) impl_->damaged(name);
     const std::string copy(value ? value : "");
     H5free_memory(value);
     return copy;

@@ -58,7 +58,7 @@ class Hdf5Reader {
 
   bool has(const std::string& name) const;
   bool has_attribute(const std::string& object, const std::string& name) const;
-  std::vector<std::string> children(const std::string& group) const;          ///< in alphabetical order
+  std::vector<std::string> children(const std::string& group) const;  ///< in alphabetical order
   bool is_integer(const std::string& dataset) const;
 
   /// Values of a dataset [rows] or [rows, columns], row by row.

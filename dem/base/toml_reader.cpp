@@ -163,8 +163,7 @@ toml::node* TomlDocument::State::find(std::string_view path, toml::node* node) {
 
 void TomlDocument::remove_key(std::string_view path) {
   const auto dot = path.rfind('.');
-  toml::node* parent =
-      dot == path.npos ? &state_->root : state_->find(path.substr(0, dot), &state_->root);
+  toml::node* parent = dot == path.npos ? &state_->root : state_->find(path.substr(0, dot), &state_->root);
   toml::table* table = parent ? parent->as_table() : nullptr;
   if (!table || !table->contains(path.substr(dot + 1)))
     return state_->add({state_->name}, "", fmt::format("unset {}: there is no such key", path));

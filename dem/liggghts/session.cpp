@@ -255,8 +255,7 @@ int& Session::Impl::lists_are_newer() {
   int dimension = 0;
   auto* flag = static_cast<int*>(lmp->force->pair->extract("computeflag", dimension));
   if (!flag)
-    throw InputError(
-        advised("dem.engine = \"liggghts\" (no state of its lists)", "use libliggghts 3.8"));
+    throw InputError(advised("dem.engine = \"liggghts\" (no state of its lists)", "use libliggghts 3.8"));
   return *flag;
 }
 

@@ -65,8 +65,8 @@ std::vector<NearPair> near_particles(const Bed& bed, const Rows& rows, const Con
   return sorted_by_rows(parts, bed.size());
 }
 
-std::vector<NearWall> near_walls(const ContactLists& lists, const Rows& rows,
-                                 const WallSurface& surface, double max_gap_m) {
+std::vector<NearWall> near_walls(const ContactLists& lists, const Rows& rows, const WallSurface& surface,
+                                 double max_gap_m) {
   std::vector<NearWall> found;
   std::vector<std::int32_t> facets;
   for (const Share& share : lists.shares()) {

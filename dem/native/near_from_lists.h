@@ -10,7 +10,7 @@ std::vector<NearPair> near_particles(const Bed& bed, const Rows& rows, const Con
                                      double max_gap_m);
 
 /// Its walls likewise. Not for periodic beds, where walls are met at images.
-std::vector<NearWall> near_walls(const ContactLists& lists, const Rows& rows,
-                                 const WallSurface& surface, double max_gap_m);
+std::vector<NearWall> near_walls(const ContactLists& lists, const Rows& rows, const WallSurface& surface,
+                                 double max_gap_m);
 
 }  // namespace granrad::native

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "dem/base/random.h"
 #include "dem/base/program.h"
+#include "dem/base/random.h"
 #include "dem/packing/packing_cells.h"
 
 namespace granrad {

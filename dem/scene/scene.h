@@ -57,11 +57,11 @@ struct Scene {
   std::size_t box_wall_count = 0;  ///< how many of them, in front, are faces of the box
   std::vector<std::string> notes;  ///< what was done to the walls (see cover_walls)
   std::array<bool, 3> periodic{};
-  std::vector<Box> removals;  ///< [[remove]]: particles whose centre comes into one of these leave
-  Box region;                               ///< the heat-transfer region
-  double particle_diameter_m = 0;           ///< of the feed's particles; with a file, its mean unless given
-  double particle_temperature_K = 300;      ///< of the feed's particles, and of a file without temperatures
-  std::filesystem::path particle_file;      ///< empty: particles come from the feed
+  std::vector<Box> removals;            ///< [[remove]]: particles whose centre comes into one of these leave
+  Box region;                           ///< the heat-transfer region
+  double particle_diameter_m = 0;       ///< of the feed's particles; with a file, its mean unless given
+  double particle_temperature_K = 300;  ///< of the feed's particles, and of a file without temperatures
+  std::filesystem::path particle_file;  ///< empty: particles come from the feed
   std::vector<std::string> particle_types;  ///< materials of types 1, 2, ... of a dump; empty: in their order
   FeedSettings feed;
   ReplaySettings replay;

@@ -238,7 +238,7 @@ class GeometryReader {
                                                 [&](std::size_t w) { return w < scene_.box_wall_count; });
       scene_.box_wall_count = static_cast<std::size_t>(box_walls_kept);
     } catch (const InputError& error) {
-      for (const auto& problem : error.problems()) root_.problem("", problem);
+      for (const auto& problem : error.problems()) root_.problem("walls", problem);
     }
   }
 

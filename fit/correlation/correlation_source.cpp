@@ -42,9 +42,10 @@ void refuse_what_a_table_cannot_serve(const CorrelationTable& table, const Enclo
   }
   for (const auto& wall : enclosure.walls)
     if (!plane_of(wall))
-      problems.push_back(advised(fmt::format("{}: wall {} is not in one plane (correlations hold for planar walls)",
-                                             table.name, wall.name),
-                                 advice));
+      problems.push_back(
+          advised(fmt::format("{}: wall {} is not in one plane (correlations hold for planar walls)",
+                              table.name, wall.name),
+                  advice));
   for (int axis = 0; axis < 3; ++axis)
     if (enclosure.periodic[axis])
       problems.push_back(advised(

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "dem/bed/wall_shape.h"
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
 #include "dem/bed/solid_fraction.h"
+#include "dem/bed/wall_shape.h"
 #include "raytrace/facets.h"
 
 namespace granrad {

@@ -45,7 +45,8 @@ std::map<std::string, std::vector<double>> read_columns(const fs::path& file) {
 }
 
 /// Mean of the values known at times in [from, to); NaN without any.
-double mean_between(const std::vector<double>& time, const std::vector<double>& value, double from, double to) {
+double mean_between(const std::vector<double>& time, const std::vector<double>& value, double from,
+                    double to) {
   double sum = 0, count = 0;
   for (std::size_t k = 0; k < time.size(); ++k)
     if (time[k] >= from && time[k] < to && std::isfinite(value[k])) sum += value[k], ++count;
@@ -72,8 +73,9 @@ SteadyState judge_steadiness(const fs::path& history, double start_s) {
   const auto columns = read_columns(history);
   for (const char* name : {"time_s", "solid_fraction", "mean_velocity_m_s", "residence_time_s"})
     if (!columns.contains(name))
-      throw InputError(advised(fmt::format("{}: no column {} (not the history of a run)", history.string(), name),
-                               "give a folder that granrun run has written"));
+      throw InputError(
+          advised(fmt::format("{}: no column {} (not the history of a run)", history.string(), name),
+                  "give a folder that granrun run has written"));
   const auto &time = columns.at("time_s"), &phi = columns.at("solid_fraction");
   SteadyState state;
   if (time.empty() || time.back() <= start_s) return state;
@@ -82,7 +84,8 @@ SteadyState judge_steadiness(const fs::path& history, double start_s) {
   const double residence = mean_between(time, columns.at("residence_time_s"), state.from_s, end);
   state.residence_s = std::isfinite(residence) ? residence : 0;
   state.drift = change(time, phi, state.from_s, end);
-  const double faster = state.residence_s > 0 ? change(time, columns.at("mean_velocity_m_s"), state.from_s, end) : 0;
+  const double faster =
+      state.residence_s > 0 ? change(time, columns.at("mean_velocity_m_s"), state.from_s, end) : 0;
   const auto rows = std::count_if(time.begin(), time.end(), [&](double t) { return t >= state.from_s; });
   state.reached = static_cast<double>(rows) >= least_rows && state.drift < most_drift &&
                   faster < most_velocity_drift && time.back() - state.from_s >= 0.5 * state.residence_s;
@@ -98,8 +101,9 @@ double reached_s(const fs::path& folder) {
 
 bool advance_to(const FlowRun& run, double end_s, int threads) {
   if (reached_s(run.folder) >= end_s * (1 - 1e-9)) return true;
-  std::vector<std::string> arguments = {"run", run.scene.string(), "-o", run.folder.string(), "--resume", "-q",
-                                        "--set", "radiation.source=none"};
+  std::vector<std::string> arguments = {
+      "run",   run.scene.string(),     "-o", run.folder.string(), "--resume", "-q",
+      "--set", "radiation.source=none"};
   const auto set = [&](const std::string& assignment) {
     arguments.insert(arguments.end(), {"--set", assignment});
   };
@@ -112,8 +116,8 @@ bool advance_to(const FlowRun& run, double end_s, int threads) {
   const int code = run_child(sibling_program("granrun"), arguments, log);
   if (code == 130 || code == 143 || code == 128 + 2 || code == 128 + 15) return false;
   if (code == 0) return true;
-  const auto text = fmt::format("granrun run {} ended with code {}: {} (all it said: {})", run.scene.string(), code,
-                                last_lines(log), log.string());
+  const auto text = fmt::format("granrun run {} ended with code {}: {} (all it said: {})", run.scene.string(),
+                                code, last_lines(log), log.string());
   if (code == exit_bad_input) throw InputError(text);
   if (code == exit_io_failure) throw IoError(text);
   throw NumericalError(text);

@@ -33,7 +33,7 @@ bool advance_to(const FlowRun& run, double end_s, int threads);
 double reached_s(const std::filesystem::path& folder);
 
 /// Frames of a run one residence time apart from steadiness on, at most `count` (one when nothing leaves).
-std::vector<std::filesystem::path> spaced_frames(const std::filesystem::path& folder, const SteadyState& steady,
-                                                 std::size_t count);
+std::vector<std::filesystem::path> spaced_frames(const std::filesystem::path& folder,
+                                                 const SteadyState& steady, std::size_t count);
 
 }  // namespace granrad

@@ -31,7 +31,8 @@ std::vector<fs::path> read_patterns(TomlTable& table, const Key& key, const fs::
   if (!table.has(key.name)) return all;
   for (const auto& pattern : table.string_list(key, 1)) {
     const auto found = matching(beside, pattern);
-    if (found.empty()) table.problem(key.name, advised("\"" + pattern + "\" matches no file", "name what is there"));
+    if (found.empty())
+      table.problem(key.name, advised("\"" + pattern + "\" matches no file", "name what is there"));
     all.insert(all.end(), found.begin(), found.end());
   }
   return all;
@@ -45,8 +46,8 @@ void read_enclosure_settings(TomlTable& table, EnclosureSettings& s) {
       } catch (const InputError& error) {
         table.problem("walls", error.what());
       }
-  const Vec3 size = table.vec3({"box_size_m", "six black walls around files without walls"}, {.unit = "m", .min = 0},
-                               Vec3{}),
+  const Vec3 size = table.vec3({"box_size_m", "six black walls around files without walls"},
+                               {.unit = "m", .min = 0}, Vec3{}),
              origin = table.vec3({"box_origin_m", "corner of that box"}, {.unit = "m"}, Vec3{});
   if (size.x > 0 && size.y > 0 && size.z > 0) s.box = Box{origin, origin + size};
   s.radius_m = table.number({"radius_m", "of files without radii"}, {.unit = "m", .min = 0}, 0);
@@ -65,7 +66,8 @@ std::string content(const fs::path& file) {
   return text.str();
 }
 
-FlowRow scene_row(const FlowSettings& s, const fs::path& scene, double solid_fraction, const fs::path& folder) {
+FlowRow scene_row(const FlowSettings& s, const fs::path& scene, double solid_fraction,
+                  const fs::path& folder) {
   FlowRow row;
   row.name = scene.stem().string();
   const std::string text = content(scene);
@@ -80,7 +82,8 @@ FlowRow scene_row(const FlowSettings& s, const fs::path& scene, double solid_fra
     std::string depends = text;
     for (const auto& assignment : run.set) depends += " " + assignment;
     const auto name = fmt::format("{}_{:02}_{}", row.name, seed, fingerprint(depends));
-    run.folder = folder / "runs" / (solid_fraction > 0 ? fmt::format("phi_{:.4f}_{}", solid_fraction, name) : name);
+    run.folder =
+        folder / "runs" / (solid_fraction > 0 ? fmt::format("phi_{:.4f}_{}", solid_fraction, name) : name);
     row.runs.push_back(run);
     if (!fed) break;  // nothing would differ
   }
@@ -91,12 +94,15 @@ FlowRow scene_row(const FlowSettings& s, const fs::path& scene, double solid_fra
 void check_choice(TomlTable& table, const FlowSettings& s) {
   const int kinds = table.has("scene") + table.has("folders") + table.has("files");
   if (kinds != 1)
-    table.problem("scene", advised(fmt::format("{} of scene, folders and files are given (a row has one origin)", kinds),
-                                   "give exactly one"));
+    table.problem(
+        "scene",
+        advised(fmt::format("{} of scene, folders and files are given (a row has one origin)", kinds),
+                "give exactly one"));
   if (!s.solid_fractions.empty() && s.scenes.size() != 1)
-    table.problem("solid_fractions", advised(fmt::format("there are {} scenes (each solid fraction is a run of one)",
-                                                         s.scenes.size()),
-                                             "name one scene, or leave solid_fractions out"));
+    table.problem(
+        "solid_fractions",
+        advised(fmt::format("there are {} scenes (each solid fraction is a run of one)", s.scenes.size()),
+                "name one scene, or leave solid_fractions out"));
   if (s.most_snapshots < s.snapshots)
     table.problem("most_snapshots", advised("fewer than snapshots", "ask for as many or more"));
 }
@@ -127,8 +133,9 @@ FlowSettings read_flow_settings(TomlTable table, const fs::path& beside) {
                            {.unit = "s", .min = 0, .min_exclusive = true}, 0.05);
   s.most_time_s = table.number({"most_time_s", "simulated time of a run, at most"},
                                {.unit = "s", .min = 0, .min_exclusive = true}, 20);
-  s.curve_error = table.number({"curve_error", "sampling error wanted of mean F_pp at 1.5 < d* < 2.5, relative"},
-                               {.unit = "1", .min = 0, .max = 1, .min_exclusive = true}, 0.01);
+  s.curve_error =
+      table.number({"curve_error", "sampling error wanted of mean F_pp at 1.5 < d* < 2.5, relative"},
+                   {.unit = "1", .min = 0, .max = 1, .min_exclusive = true}, 0.01);
   check_choice(table, s);
   return s;
 }
@@ -165,13 +172,14 @@ std::vector<fs::path> snapshots_of(const FlowRun& run, bool made, const FlowSett
                                    : "not steady yet"));
     if (steady.reached) {
       auto frames = spaced_frames(run.folder, steady, count);
-      if (frames.size() >= count || made || !(steady.residence_s > 0) || reached >= s.most_time_s * (1 - 1e-9))
+      if (frames.size() >= count || made || !(steady.residence_s > 0) ||
+          reached >= s.most_time_s * (1 - 1e-9))
         return frames;
     } else if (made || reached >= s.most_time_s * (1 - 1e-9)) {
-      throw NumericalError(advised(
-          fmt::format("{}: not steady after {:.3g} s (the solid fraction drifts by {:.2g} %)", run.folder.string(),
-                      reached, 100 * steady.drift),
-          made ? "let the run go on, or set start_s" : "raise most_time_s, or set start_s"));
+      throw NumericalError(
+          advised(fmt::format("{}: not steady after {:.3g} s (the solid fraction drifts by {:.2g} %)",
+                              run.folder.string(), reached, 100 * steady.drift),
+                  made ? "let the run go on, or set start_s" : "raise most_time_s, or set start_s"));
     }
     // Half of what is there is thrown away as the way to the steady state.
     const double wanted = s.start_s + 2 * steady.residence_s * (static_cast<double>(count) - 0.5);

@@ -73,7 +73,8 @@ void read_fit_settings(TomlTable table, GenerateSettings& s) {
   names.push_back("paper");
   const auto form = table.choice({"form", "which correlation is fitted"}, names, "both");
   const double cutoff =
-      table.number({"cutoff", "d* of the farthest pair that counts"}, {.unit = "1", .min = 1.5, .max = largest_pp_cutoff, .why = "d* of a pair"}, 10);
+      table.number({"cutoff", "d* of the farthest pair that counts"},
+                   {.unit = "1", .min = 1.5, .max = largest_pp_cutoff, .why = "d* of a pair"}, 10);
   for (const auto known : correlation_forms)
     if (form == "both" || form == to_string(known)) {
       FitOptions options;
@@ -82,7 +83,8 @@ void read_fit_settings(TomlTable table, GenerateSettings& s) {
       s.fits.emplace_back(to_string(known), options);
     }
   if (form == "paper") s.fits.emplace_back("paper", paper_choices());
-  if (form == "paper" && table.has("cutoff")) table.problem("cutoff", "is 20 in the paper's choices; leave it out");
+  if (form == "paper" && table.has("cutoff"))
+    table.problem("cutoff", "is 20 in the paper's choices; leave it out");
 }
 
 }  // namespace
@@ -99,7 +101,8 @@ GenerateSettings read_generate_settings(TomlDocument& document) {
   auto packed = root.table({"snapshots", "The random beds that are traced"});
   auto flow = root.table({"flow", "In place of [snapshots]: the flows whose snapshots are traced"});
   if (packed.present() && flow.present())
-    document.problem("flow", advised("[snapshots] and [flow] are both there (packings, or flows)", "keep one"));
+    document.problem("flow",
+                     advised("[snapshots] and [flow] are both there (packings, or flows)", "keep one"));
   if (flow.present()) settings.flow = read_flow_settings(flow, document.folder());
   if (packed.present() || !flow.present()) read_snapshot_settings(packed, settings);
   read_trace_settings(root.table({"trace", "How they are traced"}), settings);
@@ -134,8 +137,9 @@ std::string traced_name(const GenerateSettings& settings, double solid_fraction,
 }
 
 std::string traced_name(const GenerateSettings& s, const std::filesystem::path& snapshot) {
-  const auto depends = fmt::format("{} trace {} {} {} {}", std::filesystem::absolute(snapshot).string(),
-                                   view_factor_version, to_string(s.trace.method), s.trace.rays, s.trace.seed);
+  const auto depends =
+      fmt::format("{} trace {} {} {} {}", std::filesystem::absolute(snapshot).string(), view_factor_version,
+                  to_string(s.trace.method), s.trace.rays, s.trace.seed);
   return fmt::format("{}_{:08x}", snapshot.stem().string(), fingerprint(depends));
 }
 

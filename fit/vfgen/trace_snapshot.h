@@ -48,7 +48,8 @@ struct SnapshotEnclosure {
   Enclosure enclosure;
   std::string note;          ///< how the file was read, where that is not plain (Snapshot::note)
   std::size_t left_out = 0;  ///< particles with their centre outside the box
-  std::string meshes;    ///< what was mended of the STL, how its triangles fit together, what was done to the walls
+  std::string
+      meshes;  ///< what was mended of the STL, how its triangles fit together, what was done to the walls
   std::string overlaps;  ///< the pairs that overlap by more than half a radius; empty without any
 };
 

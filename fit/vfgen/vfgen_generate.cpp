@@ -41,7 +41,8 @@ std::vector<fs::path> trace_packings(const GenerateSettings& settings, const fs:
     for (int k = 1; k <= settings.count && !interrupt_signal(); ++k) {
       const auto file = folder / "traced" / (traced_name(settings, fraction, k) + ".h5");
       const auto snapshot = folder / "snapshots" / (snapshot_name(settings, fraction, k) + ".hdf");
-      if (!fs::exists(file) && !fs::exists(snapshot)) write_frame(snapshot, packed_bed(settings, fraction, k), {});
+      if (!fs::exists(file) && !fs::exists(snapshot))
+        write_frame(snapshot, packed_bed(settings, fraction, k), {});
       files.push_back(traced(settings, snapshot, file));
       progress.update(static_cast<double>(files.size()), fmt::format("solid fraction {}", fraction));
     }
@@ -59,7 +60,8 @@ std::vector<fs::path> trace_row(const GenerateSettings& settings, const FlowRow&
     const auto snapshots = take_snapshots(row, flow, count, settings.trace.threads, say);
     for (const auto& snapshot : snapshots) {
       if (interrupt_signal()) return {};
-      files.push_back(traced(settings, snapshot, folder / "traced" / (traced_name(settings, snapshot) + ".h5")));
+      files.push_back(
+          traced(settings, snapshot, folder / "traced" / (traced_name(settings, snapshot) + ".h5")));
     }
     if (interrupt_signal()) return {};
     const double error = curve_error(files);
@@ -84,7 +86,8 @@ std::vector<fs::path> trace_flows(const GenerateSettings& settings, const fs::pa
   }
   for (const auto& snapshot : settings.flow.files) {
     if (interrupt_signal()) break;
-    files.push_back(traced(settings, snapshot, folder / "traced" / (traced_name(settings, snapshot) + ".h5")));
+    files.push_back(
+        traced(settings, snapshot, folder / "traced" / (traced_name(settings, snapshot) + ".h5")));
     progress.update(++done, snapshot.filename().string());
   }
   progress.finish();
@@ -106,15 +109,17 @@ std::string origin_of(const GenerateSettings& s) {
 
 void describe_table(const GenerateSettings& settings, const std::string& name, const FitOptions& options,
                     CorrelationTable& table) {
-  table.title = settings.title + fmt::format(" ({})", name == "paper" ? "the paper's choices" : name + " form");
+  table.title =
+      settings.title + fmt::format(" ({})", name == "paper" ? "the paper's choices" : name + " form");
   table.name = name + ".toml";
   table.provenance = {
       {"source", origin_of(settings)},
       {"method",
-       fmt::format("{} with {:g} rays per particle; unweighted least squares over all pairs with d* < {:g}; F_pw on {}",
-                   to_string(settings.trace.method), settings.trace.rays, options.pp_cutoff,
-                   options.walls.empty() ? "the walls of the largest area"
-                                         : fmt::format("all walls with h < {:g} d", options.pw_reach))},
+       fmt::format(
+           "{} with {:g} rays per particle; unweighted least squares over all pairs with d* < {:g}; F_pw on {}",
+           to_string(settings.trace.method), settings.trace.rays, options.pp_cutoff,
+           options.walls.empty() ? "the walls of the largest area"
+                                 : fmt::format("all walls with h < {:g} d", options.pw_reach))},
       {"created_by", fmt::format("vfgen generate {} ({})", program_version(), program_git_sha())}};
 }
 
@@ -140,8 +145,8 @@ void fit_all(const GenerateSettings& settings, const fs::path& folder, const std
   for (const auto& [name, options] : settings.fits) {
     Progress progress("fitting " + name, 1, quiet);
     auto fit = fit_table(
-        groups.size(), [&](std::size_t k) { return read_samples(files, groups[k], options.pp_cutoff); }, options,
-        [&](double part) { progress.update(part); });
+        groups.size(), [&](std::size_t k) { return read_samples(files, groups[k], options.pp_cutoff); },
+        options, [&](double part) { progress.update(part); });
     progress.finish();
     describe_table(settings, name, options, fit.table);
     const auto table = folder / (name + ".toml");
@@ -149,7 +154,8 @@ void fit_all(const GenerateSettings& settings, const fs::path& folder, const std
     write_fit_report(folder / (name + ".html"), fit.table, fit.rows);
     const auto problems = write_findings(folder / (name + ".check.txt"), fit.table);
     if (!quiet)
-      fmt::print("{}  ({})\n", table.string(), problems == 0 ? "sound" : fmt::format("{} problems", problems));
+      fmt::print("{}  ({})\n", table.string(),
+                 problems == 0 ? "sound" : fmt::format("{} problems", problems));
   }
 }
 
@@ -163,7 +169,8 @@ int run_generate(const GenerateCommand& command, Verbosity verbosity) {
     std::error_code failure;
     fs::create_directories(command.folder / part, failure);
     if (failure)
-      throw IoError(fmt::format("{}: cannot be made ({})", (command.folder / part).string(), failure.message()));
+      throw IoError(
+          fmt::format("{}: cannot be made ({})", (command.folder / part).string(), failure.message()));
   }
   const auto files = settings.flow.present() ? trace_flows(settings, command.folder, quiet)
                                              : trace_packings(settings, command.folder, quiet);

@@ -32,9 +32,9 @@ const LineKernels& line_kernels() {
   if (asked("avx512") && has_avx512()) return line_avx512::kernels;
   if (asked("avx2") && has_avx2()) return line_avx2::kernels;
   if (asked("baseline")) return line_baseline::kernels;
-  throw InputError(advised("environment: GRANRAD_SIMD = " + std::string(wanted) +
-                               " (not an instruction set this machine runs)",
-                           "try avx512, avx2 or baseline, or unset it"));
+  throw InputError(advised(
+      "environment: GRANRAD_SIMD = " + std::string(wanted) + " (not an instruction set this machine runs)",
+      "try avx512, avx2 or baseline, or unset it"));
 }
 
 }  // namespace granrad

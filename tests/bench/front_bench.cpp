@@ -77,7 +77,8 @@ struct Contender {
 LineOptions line_options(double rays, std::uint64_t seed) {
   LineOptions options;
   options.lines_per_disc = rays > 24000 ? 12 : 6;
-  options.directions = std::max(8, static_cast<int>(std::lround(rays / (2 * options.lines_per_disc * options.replicates))));
+  options.directions =
+      std::max(8, static_cast<int>(std::lround(rays / (2 * options.lines_per_disc * options.replicates))));
   options.seed = seed;
   options.threads = 1;
   return options;
@@ -213,9 +214,12 @@ Point measure(const Contender& contender, const Channel& c, const Reference& tru
     const double off = wall_heat(c, draw) / wall_heat(c, truth.heat) - 1;
     walls += off / 3, walls2 += off * off / 3;
   }
-  const double noise2 = (mean_square(draws[0].heat_W, draws[1].heat_W, n) + mean_square(draws[1].heat_W, draws[2].heat_W, n)) / 4;
+  const double noise2 =
+      (mean_square(draws[0].heat_W, draws[1].heat_W, n) + mean_square(draws[1].heat_W, draws[2].heat_W, n)) /
+      4;
   const double bias2 = std::max(0.0, rms2 - noise2), goal2 = std::pow(0.01 * truth.mean_W, 2);
-  Point p{contender.name, contender.rays, seconds[1], 100 * std::sqrt(rms2) / truth.mean_W, 100 * walls, 0, std::nan("")};
+  Point p{contender.name, contender.rays, seconds[1], 100 * std::sqrt(rms2) / truth.mean_W, 100 * walls, 0,
+          std::nan("")};
   const double own = std::max(0.0, walls2 - walls * walls) / 2;
   const double theirs = truth.heat.isothermal_wall_heat_error_W / wall_heat(c, truth.heat);
   p.error_of_it_pct = 100 * std::sqrt(own + theirs * theirs);
@@ -268,18 +272,21 @@ int main(int argc, char** argv) {
       "wall, which alone is about 1 % of the wall heat. The paper's scheme: printed cubics, rows normalised, four "
       "walls dropped, dense LU where surfaces are grey.");
   for (const double phi : quick ? std::vector<double>{0.25} : std::vector<double>{0.07, 0.25, 0.43})
-    for (const double emissivity : quick ? std::vector<double>{0.4, 1} : std::vector<double>{0.1, 0.4, 0.7, 1}) {
+    for (const double emissivity :
+         quick ? std::vector<double>{0.4, 1} : std::vector<double>{0.1, 0.4, 0.7, 1}) {
       const Channel six = channel(phi, emissivity, false), two = channel(phi, emissivity, true);
       const Reference truth = reference(six, quick ? 1e6 : 2e7);
       std::vector<Point> points;
       for (const auto& contender : contenders(quick)) {
         Point p = measure(contender, contender.paper ? two : six, truth);
         if (contender.paper && emissivity < 1) p.cpu_s += dense_lu_seconds(two.enclosure.sphere_count() + 2);
-        csv.print("hard_spheres,{},{},\"{}\",{:g},{:.4g},{:.4g},{:.4g},{:.2g},{}\n", phi, emissivity, p.source,
-                  p.rays, p.cpu_s, p.particle_rms_pct, p.wall_heat_pct, p.error_of_it_pct,
+        csv.print("hard_spheres,{},{},\"{}\",{:g},{:.4g},{:.4g},{:.4g},{:.2g},{}\n", phi, emissivity,
+                  p.source, p.rays, p.cpu_s, p.particle_rms_pct, p.wall_heat_pct, p.error_of_it_pct,
                   std::isfinite(p.seconds_to_1_pct) ? fmt::format("{:.4g}", p.seconds_to_1_pct) : "");
-        fmt::print("{:.2f} {:.1f}  {:<42}{:>8g} rays {:>9.4g} s  particles {:>6.2f} %  walls {:+6.2f} +- {:.2f} %\n",
-                   phi, emissivity, p.source, p.rays, p.cpu_s, p.particle_rms_pct, p.wall_heat_pct, p.error_of_it_pct);
+        fmt::print(
+            "{:.2f} {:.1f}  {:<42}{:>8g} rays {:>9.4g} s  particles {:>6.2f} %  walls {:+6.2f} +- {:.2f} %\n",
+            phi, emissivity, p.source, p.rays, p.cpu_s, p.particle_rms_pct, p.wall_heat_pct,
+            p.error_of_it_pct);
         points.push_back(p);
       }
       const auto title = fmt::format("Solid fraction {}, emissivity {}", phi, emissivity);
@@ -288,7 +295,8 @@ int main(int argc, char** argv) {
       add_chart(page, title + ", over a run", points, true);
       std::vector<std::vector<std::string>> rows;
       for (const auto& p : points) rows.push_back(cells(p));
-      page.table({"source", "rays", "CPU s per update", "particles rms, %", "wall heat, %", "CPU s to 1 % over a run"},
+      page.table({"source", "rays", "CPU s per update", "particles rms, %", "wall heat, %",
+                  "CPU s to 1 % over a run"},
                  rows);
     }
   page.write(folder / "front.html");

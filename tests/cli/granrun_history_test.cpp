@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "coupling/simulation/history.h"
+#include "dem/base/constants.h"
 #include "granrun.h"
 
 using namespace granrad;
@@ -49,6 +50,8 @@ temperature_K = 1000
 role = "adiabatic"
 [walls.z_max]
 role = "adiabatic"
+[surroundings]
+temperature_K = 300
 [dem]
 step_s = 1e-5
 [radiation]
@@ -78,11 +81,16 @@ TEST(GranrunHistory, CellsWithoutAValueAreEmpty) {
   const auto text = content(folder / "history.csv");
   const auto lines = lines_of(text);
   ASSERT_EQ(lines.size(), 4u);
-  // The first row ends before the sphere is in: time, count, fraction, then no temperature.
-  EXPECT_EQ(lines[1].rfind("0.01,1,0,,", 0), 0u) << lines[1];
+  // The first row ends before the centre of the sphere is in, which falls at 15 mm/s from 0.2 mm above the region: time,
+  // count, the fraction of its cap below the border, then no temperature.
+  const double cap = 0.4e-3 - (0.2e-3 - 0.015 * 0.01);
+  const double fraction = pi * cap * cap * (3 * 0.4e-3 - cap) / 3 / (0.004 * 0.004 * 0.003);
+  EXPECT_EQ(lines[1].rfind("0.01,1,", 0), 0u) << lines[1];
+  EXPECT_NE(lines[1].find(",,"), std::string::npos) << lines[1];
   EXPECT_EQ(lines[1].back(), '0') << lines[1];  // no heat left
   EXPECT_EQ(text.find("nan"), std::string::npos) << text;
   const History history = read_history(folder / "history.csv");
+  EXPECT_NEAR(history.at("solid_fraction")[0], fraction, 1e-9);
   EXPECT_TRUE(std::isnan(history.at("mean_temperature_K")[0]));
   EXPECT_TRUE(std::isnan(history.at("h_wp_W_m2K")[0]));
   EXPECT_TRUE(std::isnan(history.at("mean_velocity_m_s")[0]));

@@ -174,8 +174,9 @@ TEST(GranrunResults, StraySpheresAreRemovedAndCounted) {
   EXPECT_NEAR(left_kg, mass, 1e-9 * mass);
   EXPECT_NEAR(left_J, mass * 800 * 400, 1e-9 * left_J);
   EXPECT_EQ(granrun(scratch, "check " + scene.string() + " --set dem.engine=none").code, 2);
-  const auto lost = granrun(scratch, "run " + scene.string() + " -q --set remove=[] --set scene.end_time_s=5 -o " +
-                                         (scratch.root / "lost").string());
+  const auto lost =
+      granrun(scratch, "run " + scene.string() + " -q --set remove=[] --set scene.end_time_s=5 -o " +
+                           (scratch.root / "lost").string());
   EXPECT_EQ(lost.code, 1);
   EXPECT_NE(lost.err.find("[[remove]]"), std::string::npos) << lost.err;
 }

@@ -250,9 +250,12 @@ TEST_F(Vfgen, TellsHowAnStlFitsTogether) {
   EXPECT_NEAR(density(2) / density(0), 1, 0.03);  // whole rays for each of 32 replicates
   EXPECT_NEAR(density(3) / density(0), 1, 0.03);
   expect_says(traced(false, false, true), 0, "not closed (3 open edges");
-  expect_says(traced(true, true, false), 1, "normals outward");
-  expect_says(traced(false, true, false), 1, "triangles face opposite sides across 8 edges");
-  expect_says(traced(false, true, false), 1, "normals must point to the particles");
+  // Turned to the particles, and said so: the same exchange as of the mesh that faces them.
+  expect_says(traced(true, true, false), 0, "normals outward");
+  expect_says(traced(true, true, false), 0, "wall walls.sides faced away from the particles and was turned");
+  expect_says(traced(false, true, false), 0, "triangles face opposite sides across 8 edges");
+  expect_says(traced(false, true, false), 0, "wall walls.ends faced away from the particles and was turned");
+  EXPECT_EQ(granrad::read_view_factors(path("x.h5")).counts.leaked, 0);
 }
 
 // A minute of rays, interrupted after a second.

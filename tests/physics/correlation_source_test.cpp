@@ -138,6 +138,8 @@ TEST(CorrelationSource, RefusesWhatATableCannotServe) {
   EXPECT_THROW(source(periodic, 0), InputError);
   auto mesh = enclosure;
   mesh.walls[0].triangles = {{0, 1, 2}, {0, 2, 3}};
+  EXPECT_NO_THROW(source(mesh, 0));  // a plane cut into triangles is a plane
+  mesh.walls[0].vertices[2].x -= 1e-4;
   EXPECT_THROW(source(mesh, 0), InputError);
   EXPECT_THROW(source(bed(channel, 0.55, 3), 0), InputError);  // beyond the table's 0.48
   EXPECT_NO_THROW(source(bed(channel, 0.005, 3), 0));          // below its 0.02: towards the empty box

@@ -68,13 +68,13 @@ const std::map<std::string, std::vector<std::string>> arrows = [] {
   const Folders correlation = join({rays, {"fit/correlation/"}});
   const Folders fitting = join({correlation, {"dem/page/", "fit/fitting/"}});
   const Folders heat = join({lines, {"dem/io/", "coupling/heat/"}});
-  const Folders simulation =
-      join({heat,
-            correlation,
-            paths,
-            shading,
-            engine,
-            {"dem/feed/feed.h", "dem/engine_native.h", "dem/engine_liggghts.h", "dem/engine_replay.h", "coupling/simulation/"}});
+  const Folders simulation = join({heat,
+                                   correlation,
+                                   paths,
+                                   shading,
+                                   engine,
+                                   {"dem/feed/feed.h", "dem/engine_native.h", "dem/engine_liggghts.h",
+                                    "dem/engine_replay.h", "coupling/simulation/"}});
   return std::map<std::string, Folders>{
       {"dem/", engine},
       {"dem/base/", base},

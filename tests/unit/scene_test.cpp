@@ -240,7 +240,7 @@ TEST(Scene, BadScenesAreRefusedWithTheirPlace) {
       {polygon_scene + "vertices_m = [[0,0,0],[1,1,0],[1,0,0],[0,1,0]]\n",
        {"the polygon has no area, or crosses itself"}},
       {polygon_scene + "vertices_m = [[0,0,0],[1,0,0],[1,0,0],[0,1,0]]\n", {"corners 1 and 2 coincide"}},
-      {replaced(polygon_scene, "'p'", "'x_min'") + "vertices_m = [[0,0,0],[1,0,0],[0,1,0]]\n",
+      {replaced(polygon_scene, "'p'", "'x_min'") + "vertices_m = [[0,0,0.01],[1,0,0.01],[0,1,0.01]]\n",
        {"polygon[0].name = \"x_min\" (another wall is called x_min; names must differ)"}},
       {plug_scene + "[[mesh]]\nname = 'm'\nfile = 'none.stl'\n",
        {"mesh[0].file = \"none.stl\" (no such file: "}},
