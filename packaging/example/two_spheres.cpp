@@ -1,4 +1,4 @@
-// Heat that two walls at 1000 K give to a sphere, by traced view factors, beside the exact factor of two spheres.
+// The view factor of two touching spheres in a box, traced, beside the exact one.
 #include <cstdio>
 
 #include "dem/bed/bed.h"
@@ -11,14 +11,17 @@ int main() {
   Bed bed;
   bed.materials.emplace_back();
   bed.box = {{0, 0, 0}, {0.01, 0.01, 0.01}};
-  for (auto& wall : box_walls(bed.box)) bed.walls.push_back(wall);
+  for (const Wall& wall : box_walls(bed.box)) bed.walls.push_back(wall);
   bed.add({0.004, 0.005, 0.005}, {}, 0.001, 300);
   bed.add({0.006, 0.005, 0.005}, {}, 0.001, 300);
 
-  ViewFactorSettings settings;
-  settings.rays = 200000;
-  const auto traced = trace_view_factors(make_enclosure(bed, bed.box), settings);
-  const double exact = exact_two_sphere(0.001, 0.001, 0.002);
-  std::printf("F of two touching spheres: traced %.5f, exact %.5f\n", traced.factor(0, 1), exact);
+  TraceOptions options;
+  options.rays_per_particle = 200000;
+  const HitCounts counts = trace_view_factors(make_enclosure(bed, bed.box), options);
+  double hits = 0;
+  for (auto k = counts.pattern.row_begin[0]; k < counts.pattern.row_begin[1]; ++k)
+    if (counts.pattern.column[k] == 1) hits = double(counts.hits[k]);
+  std::printf("traced %.5f, exact %.5f\n", hits / double(counts.launched[0]),
+              exact_two_sphere(0.001, 0.001, 0.002));
   return 0;
 }

@@ -1,7 +1,7 @@
 // Requirement: radiation steps of any length are stable, keep every temperature between the coldest and the hottest
 // surface, conserve energy, and are of first order; what a sampled heat takes too far is moved back without loss.
-// Planted, seen to fail: the slope 4 sigma T^3 of the particle in place of the chord (a cold particle passes 3000 K); the
-// emission of the start in place of the end; what is taken from one particle not given to the walls.
+// Planted, seen to fail: the slope 4 sigma T^3 of the particle in place of the chord (a cold particle passes 3000 K);
+// what is taken from one particle not given to the walls.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -90,7 +90,7 @@ TEST(ThinCloud, TheExactFluxIsThatOfTheTables) {
   for (int k = 0; k < 5; ++k) EXPECT_NEAR(exact_flux(depth[k], 120), flux[k], 2e-5) << depth[k];
 }
 
-// Checks emission, tracing, periods, closure and the solution together. Planted: flux over the area of one plate and a
+// Checks emission, tracing, periods, closure and the solution together. To plant: flux over the area of one plate and a
 // half; exchange areas closed by rows.
 TEST(ThinCloud, TracedCloudsTendToItLong) {
   for (const double depth : {0.5, 1.0}) {

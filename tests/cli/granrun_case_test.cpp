@@ -40,7 +40,7 @@ std::map<std::string, std::string> everything(const fs::path& folder) {
 
 }  // namespace
 
-// Catches a lock that is not taken, or that outlives its process (planted: no flock, both runs went on).
+// Catches a lock that is not taken, or that outlives its process (to plant: no flock, both runs went on).
 TEST(GranrunCase, BelongsToOneProcess) {
   Scratch scratch;
   const auto scene = scratch.write("plug.toml", small_plug);
@@ -126,7 +126,7 @@ TEST(GranrunCase, HangUpAndUserSignalSaveACheckpoint) {
   EXPECT_EQ(ended(child), 129);
 }
 
-// Catches paths of the folder it was first run in (planted: effective_text in the place of portable_text).
+// Catches paths of the folder it was first run in (to plant: effective_text in the place of portable_text).
 TEST(GranrunCase, ItsSceneRunsAnywhere) {
   Scratch scratch;
   scratch.write("bed.csv", "x,y,z,radius\n0.002,0.0015,0.002,0.0004\n0.001,0.0015,0.002,0.0004\n");

@@ -57,7 +57,7 @@ TEST(GranrunValidate, ComparesSourcesOnAFrozenBed) {
       << "adiabatic walls, one radiosity each";
 }
 
-// Planted: the threshold judged on the first step of the ladder.
+// To plant: the threshold judged on the first step of the ladder.
 TEST(GranrunValidate, LaddersEmissivitiesAndAThreshold) {
   Scratch scratch;
   const auto scene =

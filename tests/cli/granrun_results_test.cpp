@@ -34,7 +34,7 @@ nlohmann::json results_of(const fs::path& folder) {
 }  // namespace
 
 // A chain of ten spheres between 1000 K and 300 K: a series of nine contacts 2 k sqrt(pi/4 (d^2 - D^2)) and two walls
-// 2 k sqrt(pi (R^2 - h^2)). Catches heat of walls mixed up or lost (planted: given_J of the next wall), and h from a
+// 2 k sqrt(pi (R^2 - h^2)). Catches heat of walls mixed up or lost (to plant: given_J of the next wall), and h from a
 // mean wall temperature.
 TEST(GranrunResults, ChainBetweenHotAndColdTellsTheHeatOfEachWall) {
   Scratch scratch;

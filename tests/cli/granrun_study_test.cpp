@@ -93,7 +93,7 @@ TEST(GranrunStudy, EveryKindOfVariationBecomesOneRow) {
   EXPECT_NE(content(study.folder / "report.html").find("Every case"), std::string::npos);
 }
 
-// Planted: identity without the scene: the second study keeps the old rows.
+// To plant: identity without the scene: the second study keeps the old rows.
 TEST(GranrunStudy, AChangedSceneInputOrVersionRunsAnewAndKeepsTheOld) {
   SmallStudy study;
   ASSERT_EQ(study.run(two_cases).code, 0);
@@ -134,7 +134,7 @@ TEST(GranrunStudy, AChangedSceneInputOrVersionRunsAnewAndKeepsTheOld) {
   EXPECT_NE(study.run(with_table).err.find("case table: finished"), std::string::npos);
 }
 
-// Planted: a throw of the first bad case ends the study.
+// To plant: a throw of the first bad case ends the study.
 TEST(GranrunStudy, AnImpossibleCaseFailsAloneAndIsNamed) {
   SmallStudy study;
   const auto outcome = study.run(

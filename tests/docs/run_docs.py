@@ -1,6 +1,6 @@
 """What README and docs say is so: every file they name exists, every command and every Python block they show runs, and
 the references made of the programs are up to date. Usage: run_docs.py BIN SOURCE [PYTHONPATH]
-Catches, tried once each: a link to a page that is not there; an option that does not exist; a renamed key in scene.md.
+Meant to catch: a link to a page that is not there; an option that does not exist; a renamed key in scene.md.
 """
 import json
 import os

@@ -1,6 +1,6 @@
 """Pages of the programs, opened in headless Chromium at three widths: no script fails, every figure is drawn, nothing is
 cut off at the side and no texts overlap. Usage: pages_in_browser.py BIN SOURCE
-Catches, tried once each: a missing bracket in page.js; a canvas of no height; a table wider than the page.
+Meant to catch: a missing bracket in page.js; a canvas of no height; a table wider than the page.
 """
 import pathlib
 import re

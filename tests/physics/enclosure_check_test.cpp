@@ -2,7 +2,7 @@
 // turned faces, plates seen from behind, particles outside, walls in other units. A sound one passes without a word, and
 // a mesh that faces away from its bed is turned.
 //
-// Planted: backs counted by number of faces instead of by rays (the sound hopper is refused); a wall of closed body taken
+// To plant: backs counted by number of faces instead of by rays (the sound hopper is refused); a wall of closed body taken
 // for one that faces away. Fails here.
 #include "raytrace/rays/enclosure_check.h"
 

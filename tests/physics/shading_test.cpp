@@ -1,5 +1,5 @@
 // Requirement: explicit shading gives the factors of each pair of spheres, their sums and the heats of particles as many
-// rays do, and closes with walls by rays. Planted, seen to fail: neighbours beyond the partner block too (pairs, row sums);
+// rays do, and closes with walls by rays. To plant: neighbours beyond the partner block too (pairs, row sums);
 // points spread evenly over the width of the lens instead of its area (ABlockerInTheMiddle).
 #include <gtest/gtest.h>
 

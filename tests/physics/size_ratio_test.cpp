@@ -1,6 +1,6 @@
 // Requirement: a small sphere moves right beside and upon spheres many times its size, at any stiffness and step.
 //
-// Planted: one fixed-point scale for all (that of the largest); every test here sees it: the small sphere
+// To plant: one fixed-point scale for all (that of the largest); every test here sees it: the small sphere
 // stands still. The second body's force in the first's units; the saddle sees it. Torques in the units of
 // forces; rolling down the slope sees it.
 #include <gtest/gtest.h>

@@ -173,7 +173,7 @@ TEST(HopperFeed, StartsAnyNumber) {
   }
 }
 
-// A grain that has crossed a period is where its image is (planted: positions as they stand, it is not seen).
+// A grain that has crossed a period is where its image is (to plant: positions as they stand, it is not seen).
 TEST(HopperFeed, SeesGrainsAcrossAPeriod) {
   Scene scene = hopper_scene(400);
   scene.periodic = {true, true, false};

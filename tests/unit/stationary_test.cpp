@@ -28,7 +28,7 @@ double true_error(std::size_t n, double rho) {
 
 }  // namespace
 
-// Catches rows taken as independent (planted: tau = 1 gives 0.57, 0.33 and 0.16 of the error at rho 0.5, 0.8, 0.95)
+// Catches rows taken as independent (to plant: tau = 1 gives 0.57, 0.33 and 0.16 of the error at rho 0.5, 0.8, 0.95)
 // and batches of one length (8 batches: 0.43 at 20 rows and rho 0.8).
 TEST(Stationary, ErrorsOfCorrelatedRowsAreTheirScatter) {
   std::mt19937_64 random(7);
@@ -74,7 +74,7 @@ TEST(Stationary, WindowStartsAfterTheRise) {
   EXPECT_LT(time[window.first_row], 4.0);
 }
 
-// Catches a window that is called steady because it is short (planted: no drift test).
+// Catches a window that is called steady because it is short (to plant: no drift test).
 TEST(Stationary, ARiseIsNotSteady) {
   std::vector<double> time, linear, relaxing;
   for (int k = 1; k <= 100; ++k) {

@@ -38,7 +38,7 @@ TEST(WallCoefficients, DoNotExistWithoutADifferenceOrAHotWall) {
   EXPECT_FALSE(wall_coefficients(bed, bed.box, {1, 1, 1}, 500));
 }
 
-// Catches a mean wall temperature as driving difference (planted: area-weighted, h of a hot and a cold wall).
+// Catches a mean wall temperature as driving difference (to plant: area-weighted, h of a hot and a cold wall).
 TEST(WallCoefficients, DoNotExistForWallsOfSeveralTemperatures) {
   Bed bed = channel();
   bed.walls[3].temperature_K = 300;
