@@ -35,7 +35,8 @@ usage() {
   fuzz [N]    N random scenes (100) against what must hold whatever they are; failures are made small and kept
   test        the test suite (minutes)
   test-long   the physics that takes long
-  gates       layout of the sources, headers alone, unit tests under the address and undefined-behaviour sanitizers
+  gates       layout of the sources, headers alone
+  sanitize    unit tests under the address and undefined-behaviour sanitizers
   tidy        clang-tidy on all sources, or on those named
   format      lays the sources out
   docs        references made from the programs, and the pages as a site in build/site
@@ -94,6 +95,10 @@ case ${1:-} in
       { echo "some sources are laid out differently; ./do format mends them" >&2; exit 1; }
     say "headers alone"
     cmake --build "$build" --target header_check
+    ;;
+  sanitize)
+    packages+=("${test_tools[@]}")
+    set_up
     say "unit tests under sanitizers"
     cmake --preset Sanitize -S "$root" >"$root/build/sanitize.log" 2>&1 || { cat "$root/build/sanitize.log" >&2; exit 1; }
     unit=$(cd "$root/tests" && sed -nE 's/^granrad_test\(unit\/([a-z0-9_]+).*/test_unit_\1/p' ./*.cmake)
