@@ -51,7 +51,7 @@ PathWalker::PathWalker(const Enclosure& enclosure, const EmbreeTracer& tracer, c
 Emission PathWalker::leave(const Hit& hit, std::uint64_t number, std::uint64_t event, double u0, double u1,
                            double choice) const {
   if (choice >= surfaces_.spread_share(hit.surface))
-    return {hit.position_m, cosine_direction(hit.normal, u0, u1)};
+    return {hit.position_m, cosine_direction(hit.normal, u0, u1), hit.normal};
   const auto place = random_bits(seed_ ^ spread_stream, update_, number << event_bits | event);
   return emitter_.emit(hit.surface, uniform(place[0]), uniform(place[1]), u0, u1);
 }
