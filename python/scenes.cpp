@@ -32,9 +32,10 @@ class PythonSimulation {
   }
 
   py::dict row() {
-    const HistoryRow values = simulation_->row();
+    const HistoryRow row = simulation_->record().row;
     py::dict out;
-    for (const auto& column : history_columns()) out[column.name] = values.*column.value;
+    const auto columns = history_columns();
+    for (std::size_t k = 0; k < columns.size(); ++k) out[columns[k].name] = row.values()[k];
     return out;
   }
 
