@@ -49,7 +49,9 @@ bool walk(const std::string& collection,
   while (at + head_bytes <= collection.size()) {
     const auto object = number<std::uint16_t>(collection, at);
     const auto size = number<std::uint64_t>(collection, at + 8);
-    if (object == 0) return size <= collection.size() - at;  // free space, to the end
+    if (object == 0)
+      return size == collection.size() - at;  // free space, to the end; less and HDF5 never ends
+    if (number<std::uint32_t>(collection, at + 4) != 0) return false;  // reserved
     if (size > collection.size() - at - head_bytes) return false;
     if (!visit(object, at + head_bytes, size)) return true;
     at += head_bytes + (size + 7) / 8 * 8;
