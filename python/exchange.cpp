@@ -1,7 +1,7 @@
 #include <fmt/core.h>
 
 #include "dem/base/error.h"
-#include "fit/vfgen/trace_snapshot.h"
+#include "fit/trace/trace_snapshot.h"
 #include "python/bindings.h"
 #include "raytrace/exact.h"
 

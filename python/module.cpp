@@ -1,7 +1,7 @@
 #include <fmt/core.h>
 
-#include "dem/base/data_folder.h"
 #include "dem/base/error.h"
+#include "dem/base/files/data_folder.h"
 #include "dem/base/program.h"
 #include "python/bindings.h"
 

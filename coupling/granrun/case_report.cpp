@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "coupling/granrun/profiles.h"
 #include "coupling/granrun/render.h"
-#include "coupling/granrun/results.h"
 #include "coupling/granrun/run_record.h"
+#include "coupling/results/profiles.h"
+#include "coupling/results/results.h"
 #include "coupling/simulation/case_folder.h"
 #include "dem/base/constants.h"
 #include "dem/base/error.h"

@@ -4,8 +4,8 @@
 
 #include "coupling/simulation/case_folder.h"
 #include "dem/base/error.h"
+#include "dem/base/files/text_file.h"
 #include "dem/base/program.h"
-#include "dem/base/text_file.h"
 #include "dem/io/export_text.h"
 #include "dem/io/snapshot.h"
 

@@ -12,9 +12,9 @@
 #include "coupling/granrun/new_scene.h"
 #include "coupling/granrun/render.h"
 #include "coupling/granrun/run.h"
-#include "coupling/granrun/validate.h"
 #include "coupling/measure/measure_command.h"
 #include "coupling/study/run_study.h"
+#include "coupling/validate/validate.h"
 #include "dem/base/error.h"
 #include "dem/base/program.h"
 

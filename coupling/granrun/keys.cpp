@@ -4,7 +4,7 @@
 
 #include "coupling/simulation/heat_scene.h"
 #include "dem/base/error.h"
-#include "dem/base/keys/key_reference.h"
+#include "dem/base/toml/key_reference.h"
 #include "fit/correlation/correlation.h"
 
 namespace granrad {

@@ -9,10 +9,10 @@
 #include <regex>
 #include <vector>
 
-#include "dem/base/data_folder.h"
 #include "dem/base/error.h"
+#include "dem/base/files/data_folder.h"
+#include "dem/base/files/text_file.h"
 #include "dem/base/suggestion.h"
-#include "dem/base/text_file.h"
 
 namespace granrad {
 

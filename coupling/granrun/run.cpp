@@ -7,14 +7,14 @@
 #include <optional>
 
 #include "coupling/granrun/case_notes.h"
-#include "coupling/granrun/results.h"
 #include "coupling/granrun/run_record.h"
+#include "coupling/results/results.h"
 #include "coupling/simulation/case_folder.h"
 #include "coupling/simulation/case_lock.h"
 #include "coupling/simulation/simulation.h"
 #include "dem/base/error.h"
+#include "dem/base/files/text_file.h"
 #include "dem/base/program.h"
-#include "dem/base/text_file.h"
 #include "dem/io/export_text.h"
 
 namespace granrad {

@@ -12,8 +12,8 @@
 
 #include "coupling/simulation/radiation_source.h"
 #include "dem/base/error.h"
+#include "dem/base/files/text_file.h"
 #include "dem/base/program.h"
-#include "dem/base/text_file.h"
 
 namespace granrad {
 

@@ -3,8 +3,8 @@
 #include <utility>
 #include <vector>
 
-#include "coupling/granrun/results.h"
 #include "coupling/granrun/run_options.h"
+#include "coupling/results/results.h"
 #include "coupling/simulation/case_folder.h"
 #include "coupling/simulation/simulation.h"
 

@@ -10,8 +10,8 @@
 #include "coupling/simulation/heat_scene.h"
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
+#include "dem/base/files/text_file.h"
 #include "dem/base/program.h"
-#include "dem/base/text_file.h"
 #include "dem/page/html_report.h"
 
 namespace granrad {

@@ -10,7 +10,7 @@
 #include "coupling/simulation/case_lock.h"
 
 #include "dem/base/error.h"
-#include "dem/base/text_file.h"
+#include "dem/base/files/text_file.h"
 #include "dem/io/snapshot.h"
 
 namespace granrad {

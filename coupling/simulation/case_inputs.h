@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "dem/base/toml_reader.h"
+#include "dem/base/toml/toml_reader.h"
 
 namespace granrad {
 

@@ -9,7 +9,7 @@
 
 #include "coupling/simulation/case_inputs.h"
 #include "dem/base/error.h"
-#include "dem/base/text_file.h"
+#include "dem/base/files/text_file.h"
 
 namespace granrad {
 

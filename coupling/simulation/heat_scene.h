@@ -7,7 +7,7 @@
 
 #include "coupling/heat/conduction.h"
 #include "coupling/simulation/case_inputs.h"
-#include "dem/base/toml_reader.h"
+#include "dem/base/toml/toml_reader.h"
 #include "dem/scene/scene.h"
 #include "raytrace/exchange.h"
 

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "coupling/simulation/case_folder.h"
+#include "dem/base/files/text_file.h"
 #include "dem/base/program.h"
-#include "dem/base/text_file.h"
 
 namespace granrad {
 

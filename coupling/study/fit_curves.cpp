@@ -8,7 +8,7 @@
 #include "coupling/study/child_process.h"
 #include "coupling/study/claims.h"
 #include "dem/base/error.h"
-#include "dem/base/text_file.h"
+#include "dem/base/files/text_file.h"
 
 namespace granrad {
 

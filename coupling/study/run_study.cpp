@@ -5,7 +5,7 @@
 #include "coupling/study/study_page.h"
 #include "coupling/study/study_tables.h"
 #include "dem/base/error.h"
-#include "dem/base/text_file.h"
+#include "dem/base/files/text_file.h"
 
 namespace granrad {
 

@@ -6,7 +6,7 @@
 
 #include "coupling/study/study.h"
 #include "dem/base/error.h"
-#include "dem/base/toml_reader.h"
+#include "dem/base/toml/toml_reader.h"
 
 namespace granrad {
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "coupling/granrun/results.h"
+#include "coupling/results/results.h"
 #include "coupling/simulation/case_folder.h"
 #include "coupling/study/csv_cells.h"
 #include "dem/base/error.h"

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "coupling/simulation/history.h"
-#include "dem/base/text_file.h"
+#include "dem/base/files/text_file.h"
 
 namespace granrad {
 

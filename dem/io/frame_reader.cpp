@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "dem/base/error.h"
-#include "dem/base/hdf5_file.h"
+#include "dem/base/files/hdf5_file.h"
 #include "dem/bed/wall_columns.h"
 #include "dem/io/frame_layout.h"
 #include "dem/io/snapshot.h"

@@ -2,10 +2,12 @@
 
 #include <cmath>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "dem/base/error.h"
-#include "dem/base/hdf5_file.h"
+#include "dem/base/files/hdf5_file.h"
+#include "dem/base/files/text_file.h"
 #include "dem/base/program.h"
 #include "dem/bed/wall_columns.h"
 #include "dem/io/frame_layout.h"
@@ -142,6 +144,17 @@ void write_frame(const std::filesystem::path& file, const Bed& bed, const StateB
   out.write("/granrad/periodic", std::vector<std::uint8_t>(bed.periodic.begin(), bed.periodic.end()));
   write_state(out, state);
   out.commit();
+}
+
+void write_series(const std::filesystem::path& series_file,
+                  const std::vector<std::pair<std::filesystem::path, double>>& frames) {
+  nlohmann::ordered_json series{{"file-series-version", "1.0"}, {"files", nlohmann::ordered_json::array()}};
+  const auto folder = std::filesystem::absolute(series_file).parent_path();
+  for (const auto& [file, time_s] : frames)
+    series["files"].push_back(
+        {{"name", std::filesystem::absolute(file).lexically_relative(folder).generic_string()},
+         {"time", time_s}});
+  write_text_file(series_file, series.dump(1) + "\n");
 }
 
 }  // namespace granrad

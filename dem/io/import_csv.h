@@ -1,5 +1,5 @@
 #pragma once
-#include "dem/base/text_lines.h"
+#include "dem/base/files/text_lines.h"
 #include "dem/io/snapshot.h"
 
 namespace granrad {

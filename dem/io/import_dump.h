@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "dem/base/text_lines.h"
+#include "dem/base/files/text_lines.h"
 #include "dem/io/snapshot.h"
 
 namespace granrad {

@@ -9,8 +9,8 @@
 #include <pugixml.hpp>
 
 #include "dem/base/error.h"
-#include "dem/base/file_bytes.h"
-#include "dem/base/text_lines.h"
+#include "dem/base/files/file_bytes.h"
+#include "dem/base/files/text_lines.h"
 #include "dem/io/import_vtk.h"
 #include "dem/io/point_data.h"
 

@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "dem/base/error.h"
-#include "dem/base/file_bytes.h"
+#include "dem/base/files/file_bytes.h"
 #include "dem/io/import_csv.h"
 #include "dem/io/import_dump.h"
 #include "dem/io/import_vtk.h"

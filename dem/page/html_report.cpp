@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "dem/base/constants.h"
+#include "dem/base/files/text_file.h"
 #include "dem/base/program.h"
-#include "dem/base/text_file.h"
 #include "dem/page/page_assets.h"
 #include "dem/page/page_data.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "dem/base/toml_reader.h"
+#include "dem/base/toml/toml_reader.h"
 #include "dem/bed/bed.h"
 #include "dem/bed/material.h"
 #include "dem/bed/wall.h"

@@ -6,7 +6,7 @@
 #include "dem/base/error.h"
 #include "dem/bed/wall_cover.h"
 #include "dem/bed/wall_shape.h"
-#include "dem/io/import_stl.h"
+#include "dem/mesh/import_stl.h"
 #include "dem/scene/scene_parts.h"
 
 namespace granrad {

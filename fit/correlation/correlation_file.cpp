@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "dem/base/error.h"
-#include "dem/base/text_file.h"
-#include "dem/base/toml_reader.h"
+#include "dem/base/files/text_file.h"
+#include "dem/base/toml/toml_reader.h"
 #include "fit/correlation/correlation.h"
 
 namespace granrad {

@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "dem/base/error.h"
-#include "dem/base/keys/key_reference.h"
 #include "dem/base/program.h"
-#include "fit/vfgen/generate.h"
+#include "dem/base/toml/key_reference.h"
+#include "fit/generate/generate.h"
 #include "fit/vfgen/vfgen_commands.h"
 
 namespace {

@@ -5,7 +5,7 @@
 
 #include "dem/base/program.h"
 #include "fit/fitting/fit_correlation.h"
-#include "fit/vfgen/trace_snapshot.h"
+#include "fit/trace/trace_snapshot.h"
 
 namespace granrad {
 
@@ -50,7 +50,7 @@ struct MeasureCommand {
 };
 int run_measure(const MeasureCommand& command, Verbosity verbosity);
 
-/// vfgen generate: see fit/vfgen/generate.h.
+/// vfgen generate: see fit/generate/generate.h.
 struct GenerateCommand {
   std::filesystem::path config, folder;
   int threads = 0;

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "dem/base/error.h"
-#include "dem/base/text_file.h"
+#include "dem/base/files/text_file.h"
 #include "fit/fitting/curve_fit.h"
 #include "fit/vfgen/vfgen_commands.h"
 

@@ -4,8 +4,8 @@
 #include "dem/base/program.h"
 #include "fit/fitting/fit_report.h"
 #include "fit/fitting/fit_table.h"
+#include "fit/trace/view_factor_samples.h"
 #include "fit/vfgen/vfgen_commands.h"
-#include "fit/vfgen/view_factor_samples.h"
 
 namespace granrad {
 

@@ -4,16 +4,16 @@
 #include <cmath>
 
 #include "dem/base/error.h"
+#include "dem/base/files/text_file.h"
 #include "dem/base/program.h"
-#include "dem/base/text_file.h"
 #include "dem/io/snapshot.h"
 #include "fit/fitting/fit_report.h"
 #include "fit/fitting/fit_table.h"
+#include "fit/generate/curve_error.h"
+#include "fit/generate/generate.h"
+#include "fit/trace/view_factor_samples.h"
 #include "fit/vfgen/check_table.h"
-#include "fit/vfgen/curve_error.h"
-#include "fit/vfgen/generate.h"
 #include "fit/vfgen/vfgen_commands.h"
-#include "fit/vfgen/view_factor_samples.h"
 
 namespace granrad {
 

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "dem/base/error.h"
+#include "dem/base/files/text_file.h"
 #include "dem/base/program.h"
-#include "dem/base/text_file.h"
 #include "dem/page/html_report.h"
 #include "fit/vfgen/vfgen_commands.h"
 #include "raytrace/slab/extinction.h"

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "dem/base/error.h"
-#include "dem/base/hdf5_file.h"
+#include "dem/base/files/hdf5_file.h"
 #include "dem/base/program.h"
 #include "fit/vfgen/vfgen_commands.h"
 

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "dem/base/error.h"
-#include "dem/base/hdf5_file.h"
+#include "dem/base/files/hdf5_file.h"
 #include "dem/base/program.h"
 #include "dem/bed/wall_columns.h"
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "coupling/granrun/results.h"
+#include "coupling/results/results.h"
 #include "coupling/simulation/history.h"
 #include "granrun.h"
 #include "tests/record.h"

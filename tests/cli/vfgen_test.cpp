@@ -8,7 +8,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "dem/base/hdf5_file.h"
+#include "dem/base/files/hdf5_file.h"
 #include "raytrace/exact.h"
 #include "raytrace/rays/view_factor_file.h"
 #include "tests/source_dir.h"

@@ -8,9 +8,9 @@
 #include <filesystem>
 
 #include "dem/base/error.h"
-#include "dem/base/toml_reader.h"
-#include "dem/io/import_stl.h"
+#include "dem/base/toml/toml_reader.h"
 #include "dem/io/snapshot.h"
+#include "dem/mesh/import_stl.h"
 #include "dem/scene/scene.h"
 #include "fit/correlation/correlation.h"
 #include "raytrace/rays/view_factor_file.h"

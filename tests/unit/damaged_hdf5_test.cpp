@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "dem/base/error.h"
-#include "dem/base/hdf5_file.h"
+#include "dem/base/files/hdf5_file.h"
 #include "dem/base/random.h"
 #include "raytrace/rays/view_factor_file.h"
 #include "tests/enclosures.h"

@@ -1,5 +1,5 @@
 // A flow is steady when its solid fraction and velocity have stopped drifting, and not before.
-#include "fit/vfgen/flow_run.h"
+#include "fit/generate/flow_run.h"
 
 #include <gtest/gtest.h>
 

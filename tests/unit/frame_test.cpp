@@ -12,7 +12,7 @@
 #include <limits>
 
 #include "dem/base/error.h"
-#include "dem/base/hdf5_file.h"
+#include "dem/base/files/hdf5_file.h"
 #include "dem/base/random.h"
 #include "dem/io/snapshot.h"
 #include "tests/temporary_folder.h"

@@ -11,8 +11,8 @@
 #include "dem/base/error.h"
 #include "dem/base/random.h"
 #include "dem/io/export_text.h"
-#include "dem/io/import_stl.h"
 #include "dem/io/snapshot.h"
+#include "dem/mesh/import_stl.h"
 #include "tests/temporary_folder.h"
 
 namespace granrad {

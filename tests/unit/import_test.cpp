@@ -8,8 +8,8 @@
 
 #include "dem/base/error.h"
 #include "dem/bed/wall_shape.h"
-#include "dem/io/import_stl.h"
 #include "dem/io/snapshot.h"
+#include "dem/mesh/import_stl.h"
 #include "tests/source_dir.h"
 #include "tests/temporary_folder.h"
 

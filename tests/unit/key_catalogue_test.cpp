@@ -1,13 +1,13 @@
 // A catalogue of keys, collected from a reader alone, has every key the reader can ask for, with its range, default,
 // meaning and the choices it depends on.
-#include "dem/base/keys/key_catalogue.h"
+#include "dem/base/toml/key_catalogue.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "dem/base/error.h"
-#include "dem/base/keys/key_reference.h"
+#include "dem/base/toml/key_reference.h"
 
 namespace granrad {
 namespace {

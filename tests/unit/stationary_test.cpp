@@ -1,6 +1,6 @@
 // Requirement: standard errors of correlated rows cover the true mean, and a history is called steady only where
 // it is.
-#include "coupling/granrun/stationary.h"
+#include "coupling/results/stationary.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What the user wrote is read with its units, and every problem is reported at its place, all at once.
-#include "dem/base/toml_reader.h"
+#include "dem/base/toml/toml_reader.h"
 
 #include <gtest/gtest.h>
 

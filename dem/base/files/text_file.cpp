@@ -1,0 +1,35 @@
+#include "dem/base/files/text_file.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "dem/base/error.h"
+
+namespace granrad {
+
+void write_text_file(const std::filesystem::path& file, const std::string& text) {
+  std::error_code failure;
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), failure);
+  const auto temporary = file.string() + fmt::format(".tmp{}", getpid());
+  std::FILE* stream = std::fopen(temporary.c_str(), "w");
+  if (!stream) throw IoError(fmt::format("{}: cannot write ({})", file.string(), std::strerror(errno)));
+  const bool written = std::fwrite(text.data(), 1, text.size(), stream) == text.size() &&
+                       std::fflush(stream) == 0 && fsync(fileno(stream)) == 0;
+  const int write_errno = errno;
+  const bool closed = std::fclose(stream) == 0;
+  if (!written || !closed) {
+    std::remove(temporary.c_str());
+    throw IoError(fmt::format("{}: cannot write ({})", file.string(), std::strerror(write_errno)));
+  }
+  std::filesystem::rename(temporary, file, failure);
+  if (failure) {
+    std::remove(temporary.c_str());
+    throw IoError(fmt::format("{}: cannot write ({})", file.string(), failure.message()));
+  }
+}
+
+}  // namespace granrad

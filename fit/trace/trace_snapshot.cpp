@@ -1,0 +1,357 @@
+#include "fit/trace/trace_snapshot.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "dem/base/error.h"
+#include "dem/bed/wall_cover.h"
+#include "dem/io/snapshot.h"
+#include "dem/mesh/import_stl.h"
+#include "fit/trace/overlaps.h"
+#include "raytrace/lines/line_plan.h"
+#include "raytrace/lines/line_sweep.h"
+#include "raytrace/mesh_check.h"
+#include "raytrace/rays/enclosure_check.h"
+
+namespace granrad {
+
+namespace {
+
+/// Three numbers separated by commas.
+std::optional<Vec3> parse_vec3(const std::string& text) {
+  Vec3 v;
+  const char *at = text.data(), *const end = text.data() + text.size();
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [rest, failure] = std::from_chars(at, end, v[axis]);
+    if (failure != std::errc{} || !std::isfinite(v[axis])) return {};
+    if (axis < 2 && (rest == end || *rest != ',')) return {};
+    at = axis < 2 ? rest + 1 : rest;
+  }
+  if (at != end) return {};
+  return v;
+}
+
+/// Walls end the periods a dump may have: centres stay in their image inside the old box.
+void add_box(Bed& bed, const Box& box) {
+  for (Vec3& centre : bed.position_m) centre = wrapped_into_box(bed, centre);
+  bed.periodic = {};
+  for (auto& wall : box_walls(box)) {
+    wall.contact = false;  // moved outwards where a sphere pokes through
+    wall.role = WallRole::isothermal;
+    bed.walls.push_back(wall);
+  }
+  bed.box = box;
+}
+
+/// Adds the walls of the files, called "walls" or, of several files, by the name of each; says how they fit.
+std::string add_meshes(Bed& bed, const std::vector<EnclosureSettings::Stl>& files) {
+  std::string text, names;
+  std::vector<Wall> walls;
+  for (const auto& [file, scale] : files) {
+    std::string note;
+    for (auto& wall : import_stl(file, scale, files.size() == 1 ? "walls" : file.stem().string(), &note)) {
+      wall.contact = false;
+      const bool known =
+          std::any_of(walls.begin(), walls.end(), [&](const Wall& w) { return w.name == wall.name; });
+      if (known)
+        throw InputError(
+            advised(fmt::format("--walls: {} (another wall is called {})", file.string(), wall.name),
+                    "give files of different names"));
+      walls.push_back(std::move(wall));
+    }
+    if (!note.empty()) text += note + "\n";
+    names += (names.empty() ? "" : ", ") + file.string();
+  }
+  text += fmt::format("{}: {}", names, describe(check_meshes(walls)));
+  bed.walls.insert(bed.walls.end(), walls.begin(), walls.end());
+  return text;
+}
+
+/// Everything: no particle is left out.
+Box unbounded() {
+  return {{-1e30, -1e30, -1e30}, {1e30, 1e30, 1e30}};
+}
+
+std::string names_of(const std::vector<Wall>& walls) {
+  std::string names;
+  for (const Wall& wall : walls) names += (names.empty() ? "" : ", ") + wall.name;
+  return names;
+}
+
+/// Number of the wall of this name, or -1.
+std::ptrdiff_t wall_named(const Enclosure& enclosure, const std::string& name) {
+  const auto at = std::find_if(enclosure.walls.begin(), enclosure.walls.end(),
+                               [&](const Wall& wall) { return wall.name == name; });
+  return at == enclosure.walls.end() ? -1 : at - enclosure.walls.begin();
+}
+
+/// Surface numbers of walls that are there.
+std::vector<std::int32_t> surfaces_of(const Enclosure& enclosure, const std::vector<std::string>& names) {
+  std::vector<std::int32_t> found;
+  for (const std::string& name : names)
+    found.push_back(static_cast<std::int32_t>(enclosure.sphere_count()) +
+                    static_cast<std::int32_t>(wall_named(enclosure, name)));
+  return found;
+}
+
+bool is_grey(const TraceSettings& settings) {
+  return settings.emissivity || settings.wall_emissivity;
+}
+
+/// The lines of the rays asked for, as a run traces them; of an error asked for, a first round of few.
+LineOptions line_options(const TraceSettings& settings, std::vector<std::int32_t> hot_walls) {
+  LineOptions options;
+  if (settings.error > 0)
+    options.directions = 16;
+  else
+    options = lines_for_rays(settings.rays);
+  options.seed = settings.seed;
+  options.threads = settings.threads;
+  options.target_error = settings.error;
+  options.hot_walls = std::move(hot_walls);
+  options.memory_limit_bytes = settings.memory_limit_bytes;
+  options.watch = settings.watch;
+  return options;
+}
+
+TraceOptions embree_options(const TraceSettings& settings, std::vector<std::int32_t> hot_walls) {
+  TraceOptions options;
+  options.rays_per_particle = settings.rays;
+  options.target_error = settings.error;
+  options.hot_walls = std::move(hot_walls);
+  options.sampling = settings.sampling;
+  options.seed = settings.seed;
+  options.threads = settings.threads;
+  options.memory_limit_bytes = settings.memory_limit_bytes;
+  options.watch = settings.watch;
+  return options;
+}
+
+HitCounts sweep(const Enclosure& enclosure, const LineOptions& options, TraceReport& spent) {
+  const auto start = std::chrono::steady_clock::now();
+  LineReport report;
+  HitCounts counts = sweep_view_factors(enclosure, options, &report);
+  spent.rays = report.ray_equivalents;
+  spent.rounds = report.rounds;
+  spent.error = report.estimated_error;
+  spent.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return counts;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
+  return text;
+}
+
+std::vector<double> surface_emissivities(const Enclosure& enclosure, const TraceSettings& settings) {
+  std::vector<double> emissivity(enclosure.surface_count(), settings.emissivity.value_or(1));
+  for (std::size_t w = 0; w < enclosure.walls.size(); ++w)
+    emissivity[enclosure.sphere_count() + w] =
+        settings.wall_emissivity.value_or(enclosure.walls[w].emissivity);
+  emissivity.back() = 1;
+  return emissivity;
+}
+
+/// Spheres in the order of the file (a Bed stands in ascending id, a dump often does not).
+void restore_file_order(Enclosure& enclosure, const std::vector<std::size_t>& file_row) {
+  if (file_row.empty()) return;
+  std::vector<std::size_t> order(enclosure.sphere_count());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return file_row[enclosure.particle[a]] < file_row[enclosure.particle[b]];
+  });
+  const Enclosure by_id = enclosure;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    enclosure.centre_m[k] = by_id.centre_m[order[k]];
+    enclosure.radius_m[k] = by_id.radius_m[order[k]];
+    enclosure.particle[k] = by_id.particle[order[k]];
+  }
+}
+
+/// A warning about deep overlaps. Throws InputError for particles in the same place.
+std::string check_overlaps(const Bed& bed, const Enclosure& enclosure, const std::string& file) {
+  const Overlaps overlaps = find_overlaps(bed, enclosure.particle);
+  if (overlaps.same_place.count > 0)
+    throw InputError(advised(fmt::format("{}: {} are in the same place (each hides the other from every ray)",
+                                         file, describe(bed, overlaps.same_place, overlaps.all)),
+                             "keep one of each"));
+  if (overlaps.deep.count == 0) return "";
+  return fmt::format(
+      "warning: {}: {} overlap by more than half a radius (no packing does); check the radius, the unit of "
+      "length, and for particles given twice",
+      file, describe(bed, overlaps.deep, overlaps.all));
+}
+
+}  // namespace
+
+const char* to_string(TraceMethod method) {
+  return method == TraceMethod::lines ? "lines" : "embree";
+}
+
+EnclosureSettings::Stl parse_stl(const std::string& text) {
+  const auto colon = text.rfind(':');
+  if (colon == std::string::npos || std::filesystem::exists(text)) return {text, 1};
+  double scale = 0;
+  const char *first = text.data() + colon + 1, *end = text.data() + text.size();
+  const auto [rest, failure] = std::from_chars(first, end, scale);
+  if (failure != std::errc{} || rest != end || !(scale > 0) || !std::isfinite(scale))
+    throw InputError(advised(fmt::format("--walls: {} (not FILE or FILE:SCALE, scale > 0)", text),
+                             "try hopper.stl:0.001 for a file in millimetres"));
+  return {text.substr(0, colon), scale};
+}
+
+SnapshotChoice parse_step(const std::string& text) {
+  if (text == "first") return {SnapshotChoice::Kind::first};
+  if (text == "last") return {SnapshotChoice::Kind::last};
+  SnapshotChoice choice{SnapshotChoice::Kind::step};
+  const auto [rest, failure] = std::from_chars(text.data(), text.data() + text.size(), choice.step);
+  if (failure != std::errc{} || rest != text.data() + text.size() || choice.step < 0)
+    throw InputError(
+        advised(fmt::format("--step: {} (not the number of a step)", text), "try first, last or all"));
+  return choice;
+}
+
+void require_traceable(const Enclosure& enclosure, const TraceSettings& settings,
+                       const std::string& snapshot) {
+  std::vector<std::string> problems;
+  const auto problem = [&](const std::string& cause, const std::string& advice) {
+    problems.push_back(advised(cause, advice));
+  };
+  if (enclosure.sphere_count() == 0 && enclosure.walls.empty())
+    problem(snapshot + ": no surface to trace (neither particles nor walls)", "add walls with --box");
+  if (settings.method == TraceMethod::lines && is_grey(settings))
+    problem("--emissivity: lines trace black surfaces (a path of reflections is no straight line)",
+            "use --method embree");
+  if (settings.method == TraceMethod::lines && settings.sampling == Sampling::plain)
+    problem("--sampling: random (lines have a sequence of their own)", "use --method embree");
+  if (enclosure.sphere_count() == 0 && (settings.error > 0 || !settings.hot_walls.empty()))
+    problem("--error: " + snapshot + " has no particles (the stated errors are theirs)", "use --rays");
+  for (const std::string& name : settings.hot_walls)
+    if (wall_named(enclosure, name) < 0)
+      problem(fmt::format("--hot-walls: {} (no such wall; there are: {})", name,
+                          enclosure.walls.empty() ? "none" : names_of(enclosure.walls)),
+              enclosure.walls.empty() ? "add --box" : "name one of them");
+  if (!problems.empty()) throw InputError(problems);
+}
+
+Box parse_box(const std::string& text) {
+  const auto colon = text.find(':');
+  const auto size = parse_vec3(text.substr(0, colon));
+  const auto origin = colon == std::string::npos ? Vec3{} : parse_vec3(text.substr(colon + 1));
+  if (!size || !origin)
+    throw InputError(advised(fmt::format("--box: {} (not X,Y,Z or X,Y,Z:x0,y0,z0 in metres)", text),
+                             "try 0.010,0.004,0.050"));
+  if (!(size->x > 0 && size->y > 0 && size->z > 0))
+    throw InputError(
+        advised(fmt::format("--box: {} (sizes must be positive)", text), "try 0.010,0.004,0.050"));
+  return {*origin, *origin + *size};
+}
+
+namespace {
+
+void add_notes(SnapshotEnclosure& to, const std::vector<std::string>& notes) {
+  for (const auto& note : notes) to.meshes += (to.meshes.empty() ? "" : "\n") + note;
+}
+
+}  // namespace
+
+SnapshotEnclosure read_enclosure(const std::filesystem::path& snapshot, const EnclosureSettings& settings) {
+  const Snapshot read = read_snapshot(snapshot, settings.radius_m, settings.which);
+  if (settings.radius_m > 0 && read.has_radius)
+    throw InputError(
+        advised(fmt::format("--radius: {} has radii of its own", snapshot.string()), "drop --radius"));
+  Bed bed = read.bed;
+  const bool own_walls = !bed.walls.empty();
+  if (own_walls && settings.box)
+    throw InputError(
+        advised(fmt::format("--box: {} has walls of its own (two sets of walls would hide each other)",
+                            snapshot.string()),
+                "drop --box"));
+  SnapshotEnclosure result;
+  result.note = read.note;
+  if (!settings.stl.empty()) result.meshes = add_meshes(bed, settings.stl);
+  if (settings.box) add_box(bed, *settings.box);
+  add_notes(result, cover_walls(bed.walls).notes);
+  const Box region = settings.box || own_walls ? bed.box : unbounded();
+  result.enclosure = make_enclosure(bed, region);
+  EnclosureCheck check = check_enclosure(result.enclosure, bed.id);
+  if (!settings.stl.empty())
+    if (const auto turned = turn_walls_to_particles(bed.walls, check, result.enclosure); !turned.empty()) {
+      add_notes(result, turned);
+      add_notes(result, cover_walls(bed.walls).notes);
+      result.enclosure = make_enclosure(bed, region);
+      check = check_enclosure(result.enclosure, bed.id);
+    }
+  if (!check.problems.empty()) {
+    for (auto& problem : check.problems) problem = snapshot.string() + ": " + problem;
+    throw InputError(check.problems);
+  }
+  add_notes(result, check.notes);
+  result.overlaps = check_overlaps(bed, result.enclosure, snapshot.string());
+  restore_file_order(result.enclosure, read.file_row);
+  result.left_out = bed.size() - result.enclosure.sphere_count();
+  return result;
+}
+
+ViewFactorFile trace(const Enclosure& enclosure, const TraceSettings& settings, const std::string& origin) {
+  require_traceable(enclosure, settings, origin);
+  const auto hot_walls = surfaces_of(enclosure, settings.hot_walls);
+  ViewFactorFile traced;
+  traced.enclosure = enclosure;
+  traced.method = to_string(settings.method);
+  traced.origin = origin;
+  traced.seed = settings.seed;
+  traced.error_target = settings.error;
+  traced.hot_walls = joined(settings.hot_walls);
+  traced.sampling = settings.method == TraceMethod::lines  ? "lines"
+                    : settings.sampling == Sampling::sobol ? "sobol"
+                                                           : "random";
+  if (is_grey(settings)) {
+    traced.emissivity = surface_emissivities(enclosure, settings);
+    traced.counts = trace_total_exchange(enclosure, traced.emissivity, embree_options(settings, hot_walls),
+                                         &traced.spent);
+  } else if (settings.method == TraceMethod::lines) {
+    traced.counts = sweep(enclosure, line_options(settings, hot_walls), traced.spent);
+  } else {
+    traced.counts = trace_view_factors(enclosure, embree_options(settings, hot_walls), &traced.spent);
+  }
+  traced.check = self_check(enclosure, traced.counts);
+  ClosureReport report;
+  traced.closed = close(one_way_estimate(traced.counts), traced.closure, report);
+  traced.closure_correction_max = report.largest_correction;
+  return traced;
+}
+
+std::string spent_line(const ViewFactorFile& traced) {
+  const TraceReport& spent = traced.spent;
+  std::string line = fmt::format("spent {:.3g} rays in {} round{}, {:.2g} s", static_cast<double>(spent.rays),
+                                 spent.rounds, spent.rounds == 1 ? "" : "s", spent.seconds);
+  if (traced.enclosure.sphere_count() > 0) {
+    line += fmt::format("; error {:.3g} % of the ", 100 * spent.error);
+    line += traced.hot_walls.empty() ? "particle-wall sums"
+                                     : fmt::format("particle fluxes from {}", traced.hot_walls);
+    if (traced.error_target > 0) line += fmt::format(" ({:.3g} % asked for)", 100 * traced.error_target);
+  }
+  if (traced.counts.thinning_unit > 1)
+    line += fmt::format(
+        "; to stay within the memory allowed, pairs of fewer than {0} hits were kept at random, as {0}",
+        traced.counts.thinning_unit);
+  return line;
+}
+
+std::string self_check_line(const SelfCheck& check) {
+  return fmt::format(
+      "self-check {}: closure {:.1e}, reciprocity chi2 {:.3f}, mean chord {}, leaked rays {}",
+      check.failed.empty() ? "passed" : "FAILED (" + check.failed + ")", check.closure_defect,
+      check.reciprocity_chi2,
+      check.mean_chord_ratio > 0 ? fmt::format("{:.4f} of 4V/S", check.mean_chord_ratio) : "not known",
+      check.leaked);
+}
+
+}  // namespace granrad
