@@ -24,7 +24,7 @@ std::int64_t find(const SparsePattern& p, std::size_t i, std::int32_t j) {
 }
 
 /// Both one-way estimates of a pair, as one. `w` is the weight, rays per area.
-struct Pair {
+struct TwoWay {
   double x_ij = 0, x_ji = 0, v_ij = 0, v_ji = 0, w_i = 0, w_j = 0;
 
   double share_i() const { return w_i + w_j > 0 ? w_i / (w_i + w_j) : 0; }
@@ -45,10 +45,10 @@ class PairReader {
  public:
   explicit PairReader(const ExchangeAreas& e) : e_(e), open_(e.area_m2.size() - 1) {}
 
-  Pair read(std::size_t i, std::size_t j) const {
+  TwoWay read(std::size_t i, std::size_t j) const {
     const auto ij = find(e_.pattern, i, static_cast<std::int32_t>(j));
     const auto ji = find(e_.pattern, j, static_cast<std::int32_t>(i));
-    Pair p;
+    TwoWay p;
     p.w_i = weight(i);
     p.w_j = weight(j);
     if (ij >= 0) p.x_ij = e_.value[ij];
@@ -114,7 +114,7 @@ ExchangeAreas merge(const ExchangeAreas& estimate, ClosureReport& report, Merged
     OwnRays own;
     for (std::int64_t k = m.pattern.row_begin[i]; k < m.pattern.row_begin[i + 1]; ++k) {
       const auto j = static_cast<std::size_t>(m.pattern.column[k]);
-      const Pair p =
+      const TwoWay p =
           reader.read(std::min(i, j), std::max(i, j));  // one order: the two halves get the same bits
       m.value[k] = p.merged();
       if (!m.variance.empty() && reader.symmetric()) {

@@ -3,22 +3,9 @@
 
 #include "dem/base/constants.h"
 #include "dem/scene/scene.h"
+#include "tests/alumina.h"
 
 namespace granrad::testing_scenes {
-
-inline Material alumina() {
-  Material m;
-  m.name = "alumina";
-  m.density_kg_m3 = 3984;
-  m.specific_heat_J_kgK = 755;
-  m.conductivity_W_mK = 33;
-  m.youngs_modulus_Pa = 5e6;
-  m.real_youngs_modulus_Pa = 414e9;
-  m.poisson_ratio = 0.23;
-  m.restitution = 0.45;
-  m.friction = 0.4;
-  return m;
-}
 
 /// The paper's plug flow: alumina of 0.8 mm in the channel 10 x 4 x `height` mm at 1.59 g/s.
 inline Scene plug_scene(double solid_fraction, double height_m = 0.050) {

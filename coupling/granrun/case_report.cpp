@@ -12,6 +12,7 @@
 #include "coupling/simulation/case_folder.h"
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
+#include "dem/base/files/csv.h"
 #include "dem/io/snapshot.h"
 #include "dem/page/html_report.h"
 
@@ -136,10 +137,9 @@ std::string with_error(const Average& average) {
 void add_walls(HtmlReport& page, const Results& results) {
   std::vector<std::vector<std::string>> rows;
   for (const auto& wall : results.walls)
-    rows.push_back({wall.wall, fmt::format("{:.4g}", 1e6 * wall.area_m2),
-                    fmt::format("{:g}", wall.temperature_K), with_error(wall.Q_ss_W),
-                    with_error(wall.Q_sfs_W), with_error(wall.Q_rad_W), with_error(wall.Q_W),
-                    with_error(wall.flux_W_m2)});
+    rows.push_back({wall.wall, fmt::format("{:.4g}", 1e6 * wall.area_m2), cell(wall.temperature_K, 6),
+                    with_error(wall.Q_ss_W), with_error(wall.Q_sfs_W), with_error(wall.Q_rad_W),
+                    with_error(wall.Q_W), with_error(wall.flux_W_m2)});
   if (rows.empty()) return;
   page.heading("Heat given by each wall");
   page.table({"wall", "area in the region, mm²", "T, K", "contacts, W", "gas, W", "radiation, W", "all, W",

@@ -1,10 +1,10 @@
 #include <fmt/core.h>
-#include <omp.h>
 
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <memory>
 
+#include "coupling/granrun/arguments.h"
 #include "coupling/granrun/case_report.h"
 #include "coupling/granrun/check.h"
 #include "coupling/granrun/export.h"
@@ -22,118 +22,42 @@ namespace {
 
 using namespace granrad;
 
-struct Arguments {
-  std::string scene, folder, format, walltime;
-  std::vector<std::string> overrides, removed;
-  std::vector<std::string> scenes;
-  std::vector<double> emissivities;
-  ValidateOptions validate;
-  StudyOptions study;
-  ConductivityCommand measure;
-  RunOptions options;
-  bool quiet = false, verbose = false;
-};
-
-double seconds_of(const std::string& walltime) {
-  int hours = 0, minutes = 0, seconds = 0, length = 0;
-  constexpr std::size_t longest = 12;  // 99999:59:59: no number overflows
-  if (walltime.size() > longest ||
-      std::sscanf(walltime.c_str(), "%5d:%2d:%2d%n", &hours, &minutes, &seconds, &length) != 3 ||
-      length != static_cast<int>(walltime.size()) || hours < 0 || minutes < 0 || minutes > 59 ||
-      seconds < 0 || seconds > 59)
-    throw InputError(advised(fmt::format("--walltime = {} (must be HH:MM:SS, at most 99999 hours)", walltime),
-                             "try 00:30:00"));
-  return 3600.0 * hours + 60.0 * minutes + seconds;
-}
-
-/// As a shell would read it.
-std::string command_line(int argc, char** argv) {
-  std::string line;
-  for (int k = 0; k < argc; ++k) {
-    const std::string word = argv[k];
-    const bool plain = word.find_first_of(" '\"\\$[]{}*?;&|<>()#!~`\t\n") == std::string::npos;
-    std::string inside;
-    for (char c : word) inside += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    line += fmt::format("{}{}", k ? " " : "", plain && !word.empty() ? word : fmt::format("'{}'", inside));
-  }
-  return line;
-}
-
-void add_common(CLI::App* command, Arguments& a) {
-  command->add_option("--threads", a.options.threads, "threads; results do not depend on it")
-      ->check(CLI::Range(1, 4096));
-  auto* quiet = command->add_flag("-q,--quiet", a.quiet, "errors only");
-  command->add_flag("-v,--verbose", a.verbose, "also each row as it comes, time and memory on stderr")
-      ->excludes(quiet);
-}
-
-void add_scene_edits(CLI::App* command, Arguments& a) {
-  command->add_option("--set", a.overrides, "override a scene value, e.g. --set radiation.rays=1000")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
-  command->add_option("--unset", a.removed, "take a key out of the scene, e.g. --unset feed.mass_flow_kg_s")
-      ->type_name("KEY")
-      ->allow_extra_args(false);
-  add_common(command, a);
-}
-
-void add_scene(CLI::App* command, Arguments& a) {
-  command->add_option("SCENE", a.scene, "scene file (TOML)")->required();
-  add_scene_edits(command, a);
-}
-
-void add_output(CLI::App* command, Arguments& a) {
-  command->add_option("-o,--output", a.folder, "folder for the results")->required()->type_name("DIR");
-}
-
-void add_stopping(CLI::App* command, Arguments& a) {
-  command->add_option("--walltime", a.walltime, "save a checkpoint and exit 75 after HH:MM:SS");
-}
-
-void add_study_options(CLI::App* command, Arguments& a) {
+void add_study_options(CLI::App* command, Arguments& a, StudyOptions& study) {
   command->add_option("STUDY", a.scene, "study file (TOML)")->required();
   add_output(command, a);
   add_stopping(command, a);
-  command->add_option("--jobs", a.study.jobs, "cases at the same time; default: one a core")
+  command->add_option("--jobs", study.jobs, "cases at the same time; default: one a core")
       ->check(CLI::Range(1, 4096));
-  command->add_option("--case", a.study.only, "run this case alone, for clusters")->type_name("NAME");
-  command->add_flag("--list", a.study.list_only, "write jobs.txt, slurm_array.sh and Snakefile, run nothing");
-  command->add_flag("--quick", a.study.quick, "only the cases that the study marks as quick");
-  command->add_flag("--any-version", a.study.any_version,
-                    "keep what another version of granrun has finished");
-  command->add_option("--book", a.study.book, "write the claims as a book in Markdown too")
+  command->add_option("--case", study.only, "run this case alone, for clusters")->type_name("NAME");
+  command->add_flag("--list", study.list_only, "write jobs.txt, slurm_array.sh and Snakefile, run nothing");
+  command->add_flag("--quick", study.quick, "only the cases that the study marks as quick");
+  command->add_flag("--any-version", study.any_version, "keep what another version of granrun has finished");
+  command->add_option("--book", study.book, "write the claims as a book in Markdown too")
       ->type_name("FILE.md");
   add_common(command, a);
 }
 
-void add_conductivity(CLI::App* command, Arguments& a) {
+void add_conductivity(CLI::App* command, Arguments& a, ConductivityCommand& measure) {
   command->require_subcommand(1);
   auto* one =
       command->add_subcommand("conductivity", "k by path and the exchange factor F, between two plates");
-  one->add_option("BED", a.measure.bed, "a scene; or a frame, CSV or dump with --scene")->required();
-  one->add_option("--between", a.measure.between, "the plates are the walls of the box across x, y or z")
+  one->add_option("BED", measure.bed, "a scene; or a frame, CSV or dump with --scene")->required();
+  one->add_option("--between", measure.between, "the plates are the walls of the box across x, y or z")
       ->check(CLI::IsMember({"x", "y", "z"}))
       ->capture_default_str();
-  one->add_option("--scene", a.measure.scene, "scene whose walls and materials BED has")
+  one->add_option("--scene", measure.scene, "scene whose walls and materials BED has")
       ->type_name("FILE.toml");
-  one->add_option("--temperature", a.measure.temperature_K,
+  one->add_option("--temperature", measure.temperature_K,
                   "K; default: the mean of the plates, else of the particles")
       ->check(CLI::Range(1.0, 1e4));
-  one->add_option("--rays", a.measure.rays, "rays per particle of each replicate")
+  one->add_option("--rays", measure.rays, "rays per particle of each replicate")
       ->check(CLI::Range(1.0, 1e9))
       ->capture_default_str();
-  one->add_option("--replicates", a.measure.replicates, "of the rays, for their error")
+  one->add_option("--replicates", measure.replicates, "of the rays, for their error")
       ->check(CLI::Range(2, 1000))
       ->capture_default_str();
   add_scene_edits(one, a);
   add_output(one, a);
-}
-
-void apply(Arguments& a) {
-  if (a.quiet) a.options.verbosity = Verbosity::quiet;
-  if (a.verbose) a.options.verbosity = Verbosity::verbose;
-  if (!a.walltime.empty()) a.options.walltime_s = seconds_of(a.walltime);
-  if (a.options.threads > 0) omp_set_num_threads(a.options.threads);
 }
 
 /// What the command chosen does, once the arguments are known.
@@ -200,12 +124,19 @@ void add_keys(CLI::App& app, Body& body) {
   });
 }
 
+/// Scenes to validate.
+struct ValidateArguments {
+  std::vector<std::string> scenes;
+  std::vector<double> emissivities;
+  ValidateOptions options;
+};
+
 /// Every scene, once with each emissivity asked for.
-std::vector<Case> cases_to_validate(const Arguments& a) {
+std::vector<Case> cases_to_validate(const Arguments& a, const ValidateArguments& asked) {
   std::vector<Case> cases;
-  for (const auto& scene : a.scenes) {
-    if (a.emissivities.empty()) cases.push_back(read_case(scene, a.overrides, a.removed));
-    for (double one : a.emissivities) {
+  for (const auto& scene : asked.scenes) {
+    if (asked.emissivities.empty()) cases.push_back(read_case(scene, a.overrides, a.removed));
+    for (double one : asked.emissivities) {
       auto overrides = a.overrides;
       overrides.push_back(fmt::format("material.emissivity={}", one));
       cases.push_back(read_case(scene, overrides, a.removed));
@@ -215,52 +146,55 @@ std::vector<Case> cases_to_validate(const Arguments& a) {
 }
 
 void add_validate(CLI::App& app, Arguments& a, Body& body) {
+  const auto asked = std::make_shared<ValidateArguments>();
   auto* validate = app.add_subcommand("validate", "compare exchange sources on frozen beds");
-  validate->add_option("SCENE", a.scenes, "scene files (TOML)")->required();
-  validate->add_option("--emissivity", a.emissivities, "of the particles: each scene once with each")
+  validate->add_option("SCENE", asked->scenes, "scene files (TOML)")->required();
+  validate->add_option("--emissivity", asked->emissivities, "of the particles: each scene once with each")
       ->delimiter(',')
       ->check(CLI::Range(0.0, 1.0));
   validate
-      ->add_option("--max-error", a.validate.max_error_pct, "exit 4 when a source is off by more than PCT %")
+      ->add_option("--max-error", asked->options.max_error_pct,
+                   "exit 4 when a source is off by more than PCT %")
       ->type_name("PCT")
       ->check(CLI::PositiveNumber);
   add_scene_edits(validate, a);
   add_output(validate, a);
-  validate->callback(
-      [&] { body = [&] { return validate_cases(cases_to_validate(a), a.folder, a.validate, a.options); }; });
+  validate->callback([&, asked] {
+    body = [&, asked] {
+      return validate_cases(cases_to_validate(a, *asked), a.folder, asked->options, a.options);
+    };
+  });
+}
+
+/// The command, and its old name with the name of its table.
+void add_study_as(const char* name, const char* meaning, const char* table, CLI::App& app, Arguments& a,
+                  Body& body) {
+  const auto options = std::make_shared<StudyOptions>();
+  auto* study = app.add_subcommand(name, meaning);
+  add_study_options(study, a, *options);
+  study->callback([&, options, table] {
+    body = [&, options, table] {
+      options->run = a.options;
+      return run_study(a.scene, a.folder, *options, table);
+    };
+  });
 }
 
 void add_study(CLI::App& app, Arguments& a, Body& body) {
-  auto* study =
-      app.add_subcommand("study", "many cases: runs, validations, measurements, traces, fits; resumable");
-  add_study_options(study, a);
-  study->callback([&] {
-    body = [&] {
-      a.study.run = a.options;
-      return run_study(a.scene, a.folder, a.study);
-    };
-  });
-}
-
-void add_sweep(CLI::App& app, Arguments& a, Body& body) {
-  auto* sweep = app.add_subcommand("sweep", "the old name of study");
-  add_study_options(sweep, a);
-  sweep->callback([&] {
-    body = [&] {
-      a.study.run = a.options;
-      return run_study(a.scene, a.folder, a.study, "sweep.csv");
-    };
-  });
+  add_study_as("study", "many cases: runs, validations, measurements, traces, fits; resumable", "study.csv",
+               app, a, body);
+  add_study_as("sweep", "the old name of study", "sweep.csv", app, a, body);
 }
 
 void add_measure(CLI::App& app, Arguments& a, Body& body) {
+  const auto command = std::make_shared<ConductivityCommand>();
   auto* measure = app.add_subcommand("measure", "properties of a bed");
-  add_conductivity(measure, a);
-  measure->callback([&] {
-    body = [&] {
-      a.measure.overrides = a.overrides;
-      a.measure.removed = a.removed;
-      return measure_case(a.measure, a.folder, a.options);
+  add_conductivity(measure, a, *command);
+  measure->callback([&, command] {
+    body = [&, command] {
+      command->overrides = a.overrides;
+      command->removed = a.removed;
+      return measure_case(*command, a.folder, a.options);
     };
   });
 }
@@ -292,8 +226,8 @@ int granrun(int argc, char** argv) {
       "(checkpoint saved). SIGUSR1 saves a checkpoint and the run goes on.");
   Arguments a;
   Body body;
-  for (auto* add : {add_run, add_check, add_validate, add_study, add_sweep, add_measure, add_report,
-                    add_export, add_render})
+  for (auto* add :
+       {add_run, add_check, add_validate, add_study, add_measure, add_report, add_export, add_render})
     add(app, a, body);
   add_new(app, body);
   add_keys(app, body);
@@ -303,8 +237,7 @@ int granrun(int argc, char** argv) {
     return app.exit(error) == 0 ? exit_ok : exit_bad_input;
   }
   refuse_several_ranks();
-  apply(a);
-  a.options.command_line = command_line(argc, argv);
+  apply(a, argc, argv);
   const int code = body();
   if (a.verbose) fmt::print(stderr, "granrun: {}\n", resources_used());
   return code;

@@ -43,7 +43,7 @@ std::vector<double> radiative_relaxation(const Bed& bed, double hottest_K, doubl
 /// (naming it), or when a temperature leaves (0, infinity).
 HeatPaths advance_temperatures(Bed& bed, const Conductances& conductances, double dt_s);
 
-/// Temperatures in the middle of the coming radiation interval, K, as the heats held so far foretell them:
+/// Temperatures in the middle of the coming radiation interval, K, extrapolated with the heats held until now:
 /// T_i + Q_i dt / (2 m c). A source asked for heats at these makes holding them second order in dt instead of
 /// first (error of a lone sphere after 2 s at dt = 0.01 s: 2e-7 instead of 1.1e-4), and it conserves energy
 /// as before, since it gives the heats of one set of temperatures. For dt up to explicit_radiation_fraction of

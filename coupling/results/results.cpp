@@ -94,7 +94,11 @@ void line(const char* what, const Average& average, const char* unit) {
 void print_walls(const Results& results) {
   for (const WallResult& wall : results.walls) {
     if (!(std::abs(wall.Q_W.mean) > 0)) continue;
-    line(fmt::format("heat from {} ({:g} K)", wall.wall, wall.temperature_K).c_str(), wall.Q_W, "W");
+    const bool one_temperature = std::isfinite(wall.temperature_K);
+    line((one_temperature ? fmt::format("heat from {} ({:g} K)", wall.wall, wall.temperature_K)
+                          : "heat from " + wall.wall)
+             .c_str(),
+         wall.Q_W, "W");
     line("  per area in the region", wall.flux_W_m2, "W/m2");
   }
 }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "dem/base/constants.h"
+
 namespace granrad {
 
 namespace {
@@ -37,7 +39,7 @@ double autocovariance(const std::vector<double>& d, std::size_t lag) {
 /// c0 tau of Geyer's initial monotone sequence.
 double summed_monotone(const std::vector<double>& d, double c0) {
   const double n = static_cast<double>(d.size());
-  double sum = -c0, last_pair = std::numeric_limits<double>::infinity();
+  double sum = -c0, last_pair = infinity;
   for (std::size_t lag = 0; lag + 1 < d.size(); lag += 2) {
     const double pair = std::min(autocovariance(d, lag) + autocovariance(d, lag + 1), last_pair);
     if (pair <= 0) break;
@@ -67,7 +69,7 @@ double variance_of_mean(const std::vector<double>& deviations) {
 /// The row at which the marginal standard error of what follows is smallest.
 std::size_t mser_row(const std::vector<double>& x) {
   const double offset = mean_of(x, 0, x.size());  // keeps digits in the sums of squares
-  double sum = 0, squares = 0, smallest = std::numeric_limits<double>::infinity();
+  double sum = 0, squares = 0, smallest = infinity;
   std::size_t best = 0;
   for (std::size_t k = x.size(); k-- > 0;) {
     const double d = x[k] - offset, count = static_cast<double>(x.size() - k);

@@ -29,8 +29,6 @@ std::string identity_text(const TomlDocument& document, const std::vector<InputF
 /// Copies the inputs below `folder`; one that is there already with the same content stays. Throws IoError.
 void copy_inputs(const std::vector<InputFile>& inputs, const std::filesystem::path& folder);
 
-std::string read_text_file(const std::filesystem::path& file);  ///< throws IoError
-
 /// 64-bit FNV-1a of a text: tells scenes apart, no more.
 std::uint64_t text_hash(const std::string& text);
 

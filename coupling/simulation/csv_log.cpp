@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "coupling/simulation/case_inputs.h"
 #include "dem/base/error.h"
+#include "dem/base/files/csv.h"
 #include "dem/base/files/text_file.h"
 
 namespace granrad {
@@ -51,35 +51,6 @@ void CsvLog::append(const std::string& rows) {
   const bool written = std::fwrite(rows.data(), 1, rows.size(), out) == rows.size() &&
                        std::fflush(out) == 0 && fsync(fileno(out)) == 0;
   if (std::fclose(out) != 0 || !written) throw IoError(fmt::format("{}: cannot be written", file_.string()));
-}
-
-std::string cell(double value, int digits) {
-  return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "";
-}
-
-std::string text_cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
-std::vector<std::string> split_cells(const std::string& line) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (std::size_t k = 0; k < line.size(); ++k) {
-    if (line[k] == '"') {
-      if (quoted && k + 1 < line.size() && line[k + 1] == '"')
-        cells.back() += line[k++];
-      else
-        quoted = !quoted;
-    } else if (line[k] == ',' && !quoted) {
-      cells.emplace_back();
-    } else {
-      cells.back() += line[k];
-    }
-  }
-  return cells;
 }
 
 }  // namespace granrad

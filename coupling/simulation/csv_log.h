@@ -21,11 +21,4 @@ class CsvLog {
   std::string note_;
 };
 
-/// A number as a cell: empty where there is no value, which pandas and spreadsheets read as missing.
-std::string cell(double value, int digits = 12);
-/// A text as a cell: in quotes where it must be (RFC 4180).
-std::string text_cell(const std::string& text);
-/// The cells of a line, quotes taken off.
-std::vector<std::string> split_cells(const std::string& line);
-
 }  // namespace granrad

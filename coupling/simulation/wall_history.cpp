@@ -2,10 +2,7 @@
 
 #include <fmt/core.h>
 
-#include <cstdlib>
-#include <sstream>
-
-#include "coupling/simulation/case_inputs.h"
+#include "dem/base/files/csv.h"
 
 namespace granrad {
 
@@ -30,13 +27,10 @@ void WallHistoryWriter::append(const std::vector<WallRow>& rows) {
 std::vector<WallRow> read_wall_history(const std::filesystem::path& file) {
   std::vector<WallRow> rows;
   if (!std::filesystem::exists(file)) return rows;
-  std::stringstream text(read_text_file(file));
-  std::string line;
-  std::getline(text, line);
-  while (std::getline(text, line)) {
-    const auto cells = split_cells(line);
-    if (cells.size() != cell_count) continue;  // a row being written now
-    const auto number = [&](std::size_t k) { return std::strtod(cells[k].c_str(), nullptr); };
+  const CsvTable table = read_csv(file);
+  for (const auto& cells : table.rows) {
+    if (cells.size() != cell_count) continue;  // of a program with other columns
+    const auto number = [&](std::size_t k) { return cell_number(cells[k]); };
     rows.push_back({number(0), cells[1], number(2), number(3), number(4), number(5), number(6)});
   }
   return rows;

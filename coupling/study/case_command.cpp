@@ -7,6 +7,7 @@
 #include "coupling/simulation/case_inputs.h"
 #include "coupling/study/case_record.h"
 #include "dem/base/error.h"
+#include "dem/base/files/text_file.h"
 
 namespace granrad {
 

@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "coupling/simulation/case_folder.h"
 #include "coupling/simulation/history.h"
-#include "coupling/study/csv_cells.h"
 #include "dem/base/error.h"
+#include "dem/base/files/csv.h"
 
 namespace granrad {
 
@@ -29,20 +28,13 @@ double number(const std::string& cell, const std::string& where, double otherwis
 }
 
 std::vector<Claim> read_claims(const fs::path& file) {
-  std::stringstream text(read_text_file(file));
-  std::string line;
-  std::getline(text, line);
-  const auto names = csv_cells(line);
+  const CsvTable table = read_csv(file, true);
   std::vector<Claim> all;
-  for (int row = 2; std::getline(text, line); ++row) {
-    if (line.empty() || line.front() == '#') continue;
-    const auto cells = csv_cells(line);
-    const auto where = fmt::format("{}:{}", file.string(), row);
-    if (cells.size() != names.size())
-      throw InputError(fmt::format("{}: {} cells for {} columns", where, cells.size(), names.size()));
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    const auto where = fmt::format("{}:{}", table.file, table.line[row]);
     const auto of = [&](const std::string& name) -> std::string {
-      const auto at = std::find(names.begin(), names.end(), name);
-      return at == names.end() ? "" : cells[static_cast<std::size_t>(at - names.begin())];
+      const std::size_t at = table.find(name);
+      return at == CsvTable::nowhere ? "" : table.rows[row][at];
     };
     all.push_back({of("id"), of("quantity"), of("class"), of("place"), of("claim"), of("unit"), of("ours"),
                    of("why"), of("verdict"), number(of("reference"), where, unknown),
@@ -81,12 +73,6 @@ bool agrees(const Judgement& j) {
   return apart <= 2 * std::hypot(error, j.claim.uncertainty);
 }
 
-std::string quoted(const std::string& text) {
-  std::string inside;
-  for (const char c : text) inside += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return fmt::format("\"{}\"", inside);
-}
-
 }  // namespace
 
 std::vector<Judgement> judge(const fs::path& file, const Study&, const std::vector<StudyRow>& rows,
@@ -122,11 +108,11 @@ std::string claims_csv(const std::vector<Judgement>& judged) {
   std::string text =
       "id,quantity,class,place,claim,unit,reference,uncertainty,ours,ours_stderr,difference_pct,verdict,why\n";
   for (const auto& j : judged)
-    text +=
-        fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", quoted(j.claim.id), quoted(j.claim.quantity),
-                    quoted(j.claim.kind), quoted(j.claim.place), quoted(j.claim.text), quoted(j.claim.unit),
-                    cell(j.claim.reference, 6), cell(j.claim.uncertainty, 3), cell(j.ours.value, 6),
-                    cell(j.ours.error, 2), cell(j.difference_pct, 3), j.verdict, quoted(j.claim.why));
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", text_cell(j.claim.id),
+                        text_cell(j.claim.quantity), text_cell(j.claim.kind), text_cell(j.claim.place),
+                        text_cell(j.claim.text), text_cell(j.claim.unit), cell(j.claim.reference, 6),
+                        cell(j.claim.uncertainty, 3), cell(j.ours.value, 6), cell(j.ours.error, 2),
+                        cell(j.difference_pct, 3), j.verdict, text_cell(j.claim.why));
   return text;
 }
 

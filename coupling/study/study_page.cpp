@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <limits>
 #include <map>
 #include <set>
 
 #include "coupling/simulation/history.h"
-#include "coupling/study/csv_cells.h"
+#include "dem/base/constants.h"
 #include "dem/base/error.h"
+#include "dem/base/files/csv.h"
 #include "dem/page/html_report.h"
 
 namespace granrad {
@@ -29,22 +28,15 @@ std::string of_key(const StudyRow& row, const std::string& key) {
 /// particles.csv of a validation: the column at the last time, by source.
 std::map<std::string, std::vector<double>> last_particle_values(const std::filesystem::path& file,
                                                                 const std::string& column) {
-  std::ifstream in(file);
-  std::string line;
-  std::getline(in, line);
-  const auto names = csv_cells(line);
-  const auto at = [&](const std::string& name) {
-    return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-  };
-  const std::size_t source = at("source"), time = at("time_s"), value = at(column);
+  const CsvTable table = read_csv(file);
+  const std::size_t source = table.column("source"), time = table.column("time_s"),
+                    value = table.column(column);
   std::map<std::string, std::vector<double>> values;
   double last = 0;
-  while (std::getline(in, line)) {
-    const auto cells = csv_cells(line);
-    if (std::max({source, time, value}) >= cells.size()) continue;
-    const double t = std::strtod(cells[time].c_str(), nullptr);
+  for (const auto& cells : table.rows) {
+    const double t = cell_number(cells[time]);
     if (t > last) values.clear(), last = t;
-    if (t == last) values[cells[source]].push_back(std::strtod(cells[value].c_str(), nullptr));
+    if (t == last) values[cells[source]].push_back(cell_number(cells[value]));
   }
   return values;
 }
@@ -69,20 +61,24 @@ void add_curve(Chart& chart, const std::string& label, const std::string& formul
 }
 
 std::pair<double, double> range_of(const Chart& chart) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
+  double low = infinity, high = -low;
   for (const auto& one : chart.series)
     for (double x : one.x) low = std::min(low, x), high = std::max(high, x);
   return {low, high};
 }
 
+Chart empty_chart(const StudyFigure& figure) {
+  return {.title = figure.title,
+          .x_label = figure.x_label,
+          .y_label = figure.y_label,
+          .series = {},
+          .log_x = figure.log_x,
+          .log_y = figure.log_y};
+}
+
 /// Lines over time, of the first case of each point.
 void add_history(HtmlReport& page, const StudyFigure& figure, const StudyOutcome& outcome) {
-  Chart chart{.title = figure.title,
-              .x_label = figure.x_label,
-              .y_label = figure.y_label,
-              .series = {},
-              .log_x = figure.log_x,
-              .log_y = figure.log_y};
+  Chart chart = empty_chart(figure);
   for (const auto& point : figure.history)
     for (const auto& row : outcome.rows) {
       if (row.of->point != point || row.finished == 0 || row.of->kind != StudyKind::run) continue;
@@ -114,12 +110,7 @@ void add_particles(HtmlReport& page, const StudyFigure& figure, const StudyOutco
 void add_figure(HtmlReport& page, const StudyFigure& figure, const StudyOutcome& outcome) {
   if (!figure.history.empty()) return add_history(page, figure, outcome);
   if (!figure.particles.empty()) return add_particles(page, figure, outcome);
-  Chart chart{.title = figure.title,
-              .x_label = figure.x_label,
-              .y_label = figure.y_label,
-              .series = {},
-              .log_x = figure.log_x,
-              .log_y = figure.log_y};
+  Chart chart = empty_chart(figure);
   for (const auto& row : outcome.rows) {
     const auto& groups = figure.groups;
     if (!groups.empty() && std::find(groups.begin(), groups.end(), row.of->group) == groups.end()) continue;

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "coupling/results/results.h"
 #include "coupling/simulation/case_folder.h"
-#include "coupling/study/csv_cells.h"
 #include "dem/base/error.h"
+#include "dem/base/files/csv.h"
+#include "dem/base/files/text_file.h"
 
 namespace granrad {
 
@@ -42,23 +42,12 @@ Quantities of_run(const fs::path& folder) {
 /// One quantity for each number of validation.csv, by source and time.
 Quantities of_validation(const fs::path& folder) {
   Quantities all;
-  std::stringstream text(read_text_file(folder / "validation.csv"));
-  std::string line;
-  std::getline(text, line);
-  const auto names = csv_cells(line);
-  while (std::getline(text, line)) {
-    const auto cells = csv_cells(line);
-    std::string source, time, rays;
-    for (std::size_t k = 0; k < std::min(cells.size(), names.size()); ++k) {
-      if (names[k] == "source") source = cells[k];
-      if (names[k] == "time_s") time = cells[k];
-    }
-    for (std::size_t k = 0; k < std::min(cells.size(), names.size()); ++k) {
-      char* end = nullptr;
-      const double value = std::strtod(cells[k].c_str(), &end);
-      if (end != cells[k].c_str()) all[fmt::format("{}@{}:{}", source, time, names[k])] = {value, 0};
-    }
-  }
+  const CsvTable table = read_csv(folder / "validation.csv");
+  const std::size_t source = table.column("source"), time = table.column("time_s");
+  for (const auto& cells : table.rows)
+    for (std::size_t k = 0; k < cells.size(); ++k)
+      if (const double value = cell_number(cells[k]); std::isfinite(value))
+        all[fmt::format("{}@{}:{}", cells[source], cells[time], table.names[k])] = {value, 0};
   return all;
 }
 

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "coupling/simulation/history.h"
+#include "dem/base/files/csv.h"
 #include "dem/base/files/text_file.h"
 
 namespace granrad {
@@ -45,13 +46,6 @@ bool has_error(const std::vector<StudyRow>& rows, const std::string& name) {
     const auto found = row.quantity.find(name);
     return found != row.quantity.end() && std::isfinite(found->second.error) && found->second.error > 0;
   });
-}
-
-std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string inside;
-  for (const char c : text) inside += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return fmt::format("\"{}\"", inside);
 }
 
 std::string varied_value(const StudyRow& row, const std::string& key) {
@@ -109,7 +103,7 @@ std::string study_csv(const std::vector<StudyRow>& rows) {
   const auto keys = varied_keys(rows);
   const auto names = quantities(rows, keys);
   std::string text = "case,group,kind,status,replicates,seconds";
-  for (const auto& key : keys) text += fmt::format(",{}", csv_text(key));
+  for (const auto& key : keys) text += fmt::format(",{}", text_cell(key));
   for (const auto& name : names) {
     text += fmt::format(",{}", name);
     if (has_error(rows, name)) text += fmt::format(",{}_stderr", name);
@@ -118,7 +112,7 @@ std::string study_csv(const std::vector<StudyRow>& rows) {
   for (const auto& row : rows) {
     text += fmt::format("{},{},{},{},{},{:.4g}", row.of->point, row.of->group, to_string(row.of->kind),
                         row.status(), row.finished, row.seconds);
-    for (const auto& key : keys) text += fmt::format(",{}", csv_text(varied_value(row, key)));
+    for (const auto& key : keys) text += fmt::format(",{}", text_cell(varied_value(row, key)));
     for (const auto& name : names) {
       const auto found = row.quantity.find(name);
       const bool there = found != row.quantity.end();

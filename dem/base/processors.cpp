@@ -1,4 +1,5 @@
 #include "dem/base/processors.h"
+#include "dem/base/constants.h"
 
 #include <fmt/format.h>
 #include <omp.h>
@@ -14,7 +15,7 @@ namespace granrad {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr double unlimited = std::numeric_limits<double>::infinity();
+constexpr double unlimited = infinity;
 
 std::string first_words(const fs::path& file) {
   std::ifstream in(file);

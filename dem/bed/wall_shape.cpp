@@ -5,6 +5,8 @@
 #include <map>
 #include <tuple>
 
+#include "dem/base/constants.h"
+
 namespace granrad {
 
 namespace {
@@ -163,7 +165,7 @@ std::vector<std::array<Vec3, 3>> triangles_of(const Wall& wall) {
 double distance_to(const WallFace& face, const Vec3& p) {
   const auto& v = face.vertices;
   bool above_interior = true;
-  double nearest_squared = std::numeric_limits<double>::infinity();
+  double nearest_squared = infinity;
   for (std::size_t k = 0; k < v.size(); ++k) {
     const Vec3 edge = v[(k + 1) % v.size()] - v[k], to_p = p - v[k];
     if (dot(cross(face.normal, edge), to_p) >= 0) continue;  // on the inner side of this edge
@@ -176,7 +178,7 @@ double distance_to(const WallFace& face, const Vec3& p) {
 }
 
 double distance_to(const Wall& wall, const Vec3& p) {
-  double nearest = std::numeric_limits<double>::infinity();
+  double nearest = infinity;
   for (const auto& face : faces_of(wall)) nearest = std::min(nearest, distance_to(face, p));
   return nearest;
 }

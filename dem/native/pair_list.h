@@ -31,7 +31,7 @@ class MemoryTable {
 };
 
 /// The pairs one thread works on, in two lists. Near: gap below a skin, found with the grid, kept while
-/// nobody has moved through the skin. Tight: those of the near list that can touch before the next refresh;
+/// nobody has moved through the skin (a Verlet list). Tight: those of the near list that can touch before the next refresh;
 /// only these are visited each step, and they carry the springs. In each block of the tight list those with a
 /// spring come first: behind them whole packs touch nothing.
 class PairList {

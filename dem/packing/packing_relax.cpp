@@ -12,7 +12,7 @@ namespace {
 
 constexpr int most_steps = 20000;
 
-struct Pair {
+struct OverlappingPair {
   int i, j;
 };
 
@@ -25,7 +25,7 @@ class Neighbours {
         inflation_(inflation),
         largest_(*std::max_element(radius.begin(), radius.end())) {}
 
-  const std::vector<Pair>& pairs(const std::vector<Vec3>& position) {
+  const std::vector<OverlappingPair>& pairs(const std::vector<Vec3>& position) {
     if (built_at_.empty() || moved_far(position)) build(position);
     return pairs_;
   }
@@ -59,7 +59,7 @@ class Neighbours {
   const std::vector<double>& radius_;
   double inflation_, largest_;
   std::vector<Vec3> built_at_;
-  std::vector<Pair> pairs_;
+  std::vector<OverlappingPair> pairs_;
 };
 
 struct Forces {
@@ -80,7 +80,7 @@ void add_walls(const PackingBox& where, double radius, double inflation, const V
 }
 
 void compute(const PackingBox& where, const std::vector<double>& radius, double inflation,
-             const std::vector<Vec3>& position, const std::vector<Pair>& pairs, Forces& forces) {
+             const std::vector<Vec3>& position, const std::vector<OverlappingPair>& pairs, Forces& forces) {
   std::fill(forces.on.begin(), forces.on.end(), Vec3{});
   double worst = -1;
   for (const auto& [i, j] : pairs) {

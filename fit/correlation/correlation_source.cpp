@@ -19,7 +19,7 @@ namespace granrad {
 namespace {
 
 /// Entries of one row in ascending columns.
-struct Row {
+struct SphereRow {
   std::vector<std::int32_t> column;
   std::vector<double> value;
   void add(std::size_t c, double x) {
@@ -112,14 +112,14 @@ double farthest_that_counts(const CorrelationTable& table, double solid_fraction
 }
 
 /// Every sphere's neighbours within the cutoff.
-std::vector<Row> sphere_rows(const LocalCorrelation& correlation, const SolidFractionField& field,
-                             const Enclosure& enclosure, const std::vector<double>& area) {
+std::vector<SphereRow> sphere_rows(const LocalCorrelation& correlation, const SolidFractionField& field,
+                                   const Enclosure& enclosure, const std::vector<double>& area) {
   const std::size_t n = enclosure.sphere_count();
   const double cutoff_m = correlation.cutoff() * mean_diameter_m(enclosure.radius_m) * 1.01;
   std::vector<std::int32_t> all(n);
   std::iota(all.begin(), all.end(), 0);
   const CellGrid grid(enclosure.centre_m, all, cutoff_m, enclosure.box, enclosure.periodic);
-  std::vector<Row> rows(n);
+  std::vector<SphereRow> rows(n);
 #pragma omp parallel
   {
     std::vector<std::pair<std::int32_t, double>> found;
@@ -173,7 +173,7 @@ std::vector<std::vector<double>> table_walls(const LocalCorrelation& correlation
 }
 
 /// Sphere-wall entries; columns of the walls follow those of the spheres.
-void add_walls(const std::vector<std::vector<double>>& x, std::size_t spheres, std::vector<Row>& rows) {
+void add_walls(const std::vector<std::vector<double>>& x, std::size_t spheres, std::vector<SphereRow>& rows) {
   for (std::size_t w = 0; w < x.size(); ++w)
     for (std::size_t i = 0; i < spheres; ++i) {
       if (!(x[w][i] > 0)) continue;
@@ -182,7 +182,7 @@ void add_walls(const std::vector<std::vector<double>>& x, std::size_t spheres, s
     }
 }
 
-void add_wall_pairs(std::size_t first_wall, const WallExchange& walls, std::vector<Row>& rows) {
+void add_wall_pairs(std::size_t first_wall, const WallExchange& walls, std::vector<SphereRow>& rows) {
   for (std::size_t w = 0; w < walls.walls; ++w)
     for (std::size_t v = 0; v < walls.walls; ++v)
       if (const double x = walls.value[w * walls.walls + v]; x > 0)
@@ -192,7 +192,7 @@ void add_wall_pairs(std::size_t first_wall, const WallExchange& walls, std::vect
 /// Surfaces that see an opening give it what is missing to their area.
 void add_surroundings(const Enclosure& enclosure, const std::vector<double>& area,
                       const std::vector<std::vector<double>>& exact, const WallExchange& walls,
-                      std::vector<Row>& rows) {
+                      std::vector<SphereRow>& rows) {
   const std::size_t n = enclosure.sphere_count(), open = enclosure.open_surface();
   for (std::size_t i = 0; i < open; ++i) {
     double opening = 1;
@@ -207,7 +207,7 @@ void add_surroundings(const Enclosure& enclosure, const std::vector<double>& are
   }
 }
 
-ExchangeAreas flattened(const std::vector<Row>& rows, std::vector<double> area) {
+ExchangeAreas flattened(const std::vector<SphereRow>& rows, std::vector<double> area) {
   ExchangeAreas areas;
   areas.area_m2 = std::move(area);
   areas.pattern.row_begin.push_back(0);
@@ -249,7 +249,7 @@ ExchangeAreas correlation_exchange_areas(const CorrelationTable& table, const En
   require_local_solid_fractions(table, field);
   const auto exact = unobstructed_factors(enclosure);
   const auto walls = walls_of(enclosure, use, field, update);
-  std::vector<Row> rows;
+  std::vector<SphereRow> rows;
   if (n > 0) {
     const double farthest = field.uniform() ? farthest_that_counts(table, whole) : table.pp_cutoff;
     const LocalCorrelation correlation(table, field, farthest);

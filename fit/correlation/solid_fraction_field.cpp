@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
@@ -19,12 +18,9 @@ constexpr double uniform_below = 0.15, local_from = 0.30;    ///< rms deviation 
 constexpr double most_cells = 4e6;
 
 Box bounds(const Enclosure& enclosure) {
-  constexpr double inf = std::numeric_limits<double>::infinity();
-  Box box{{inf, inf, inf}, {-inf, -inf, -inf}};
+  Box box = Box::empty();
   for (const Wall& wall : enclosure.walls)
-    for (const Vec3& v : wall.vertices)
-      for (int k = 0; k < 3; ++k)
-        box.min[k] = std::min(box.min[k], v[k]), box.max[k] = std::max(box.max[k], v[k]);
+    for (const Vec3& v : wall.vertices) box.include(v);
   return box;
 }
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
+#include "dem/base/constants.h"
 #include "dem/base/error.h"
 
 namespace granrad {
@@ -83,7 +83,7 @@ Parameters solve(CurveForm form, const std::vector<double>& x, const std::vector
       starts.push_back({0.1, b / longest, 0.5, 1});
   }
   Parameters best = starts.front();
-  double least = std::numeric_limits<double>::infinity();
+  double least = infinity;
   for (auto p : starts) {
     ceres::Problem problem;
     add_residuals(problem, form, x, y, p.data());

@@ -1,8 +1,8 @@
 #include "fit/generate/curve_error.h"
 
 #include <cmath>
-#include <limits>
 
+#include "dem/base/constants.h"
 #include "fit/fitting/samples.h"
 #include "fit/fitting/student.h"
 #include "raytrace/rays/view_factor_file.h"
@@ -11,7 +11,7 @@ namespace granrad {
 
 double curve_error(const std::vector<std::filesystem::path>& traced) {
   constexpr double nearest = 1.5, farthest = 2.5;
-  if (traced.size() < 2) return std::numeric_limits<double>::infinity();
+  if (traced.size() < 2) return infinity;
   double sum = 0, sum2 = 0;
   const double n = static_cast<double>(traced.size());
   for (const auto& file : traced) {

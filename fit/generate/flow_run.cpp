@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <map>
-#include <sstream>
 
 #include "dem/base/error.h"
+#include "dem/base/files/csv.h"
 #include "dem/io/snapshot.h"
 #include "fit/generate/child_program.h"
 
@@ -17,32 +16,6 @@ namespace granrad {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Columns of a csv file of numbers by name; empty cells are NaN.
-std::map<std::string, std::vector<double>> read_columns(const fs::path& file) {
-  std::ifstream in(file);
-  if (!in) throw IoError(fmt::format("{}: cannot be read", file.string()));
-  const auto cells = [](const std::string& line) {
-    std::vector<std::string> all(1);
-    for (const char c : line)
-      if (c == ',')
-        all.emplace_back();
-      else
-        all.back() += c;
-    return all;
-  };
-  std::string line;
-  std::getline(in, line);
-  const auto names = cells(line);
-  std::map<std::string, std::vector<double>> columns;
-  while (std::getline(in, line)) {
-    const auto row = cells(line);
-    for (std::size_t k = 0; k < names.size(); ++k)
-      columns[names[k]].push_back(k < row.size() && !row[k].empty() ? std::strtod(row[k].c_str(), nullptr)
-                                                                    : std::nan(""));
-  }
-  return columns;
-}
 
 /// Mean of the values known at times in [from, to); NaN without any.
 double mean_between(const std::vector<double>& time, const std::vector<double>& value, double from,
@@ -70,22 +43,22 @@ std::string last_lines(const fs::path& log) {
 
 SteadyState judge_steadiness(const fs::path& history, double start_s) {
   constexpr double most_drift = 0.01, most_velocity_drift = 0.10, least_rows = 6;
-  const auto columns = read_columns(history);
+  const CsvTable table = read_csv(history);
   for (const char* name : {"time_s", "solid_fraction", "mean_velocity_m_s", "residence_time_s"})
-    if (!columns.contains(name))
+    if (table.find(name) == CsvTable::nowhere)
       throw InputError(
           advised(fmt::format("{}: no column {} (not the history of a run)", history.string(), name),
                   "give a folder that granrun run has written"));
-  const auto &time = columns.at("time_s"), &phi = columns.at("solid_fraction");
+  const auto time = table.numbers("time_s"), phi = table.numbers("solid_fraction");
   SteadyState state;
   if (time.empty() || time.back() <= start_s) return state;
   const double end = time.back() * (1 + 1e-12) + 1e-300;
   state.from_s = 0.5 * (start_s + time.back());
-  const double residence = mean_between(time, columns.at("residence_time_s"), state.from_s, end);
+  const double residence = mean_between(time, table.numbers("residence_time_s"), state.from_s, end);
   state.residence_s = std::isfinite(residence) ? residence : 0;
   state.drift = change(time, phi, state.from_s, end);
   const double faster =
-      state.residence_s > 0 ? change(time, columns.at("mean_velocity_m_s"), state.from_s, end) : 0;
+      state.residence_s > 0 ? change(time, table.numbers("mean_velocity_m_s"), state.from_s, end) : 0;
   const auto rows = std::count_if(time.begin(), time.end(), [&](double t) { return t >= state.from_s; });
   state.reached = static_cast<double>(rows) >= least_rows && state.drift < most_drift &&
                   faster < most_velocity_drift && time.back() - state.from_s >= 0.5 * state.residence_s;
@@ -94,9 +67,8 @@ SteadyState judge_steadiness(const fs::path& history, double start_s) {
 
 double reached_s(const fs::path& folder) {
   if (!fs::exists(folder / "history.csv")) return 0;
-  const auto columns = read_columns(folder / "history.csv");
-  const auto time = columns.find("time_s");
-  return time == columns.end() || time->second.empty() ? 0 : time->second.back();
+  const CsvTable table = read_csv(folder / "history.csv");
+  return table.rows.empty() ? 0 : table.numbers("time_s").back();
 }
 
 bool advance_to(const FlowRun& run, double end_s, int threads) {

@@ -11,9 +11,9 @@ namespace granrad {
 /// Pairs of particles that overlap beyond what a packing can: more than half the smaller radius, or in the
 /// same place.
 struct Overlaps {
-  using Pair = std::pair<std::int32_t, std::int32_t>;  ///< rows of the Bed, ascending
+  using OverlappingPair = std::pair<std::int32_t, std::int32_t>;  ///< rows of the Bed, ascending
   struct Found {
-    std::vector<Pair> first;  ///< the first ten
+    std::vector<OverlappingPair> first;  ///< the first ten
     std::int64_t count = 0;
   };
   Found deep, same_place;  ///< those in the same place are not counted as deep

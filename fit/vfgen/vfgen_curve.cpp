@@ -1,10 +1,10 @@
 #include <fmt/core.h>
 
-#include <fstream>
+#include <cmath>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "dem/base/error.h"
+#include "dem/base/files/csv.h"
 #include "dem/base/files/text_file.h"
 #include "fit/fitting/curve_fit.h"
 #include "fit/vfgen/vfgen_commands.h"
@@ -17,36 +17,18 @@ struct Columns {
   std::vector<double> x, y;
 };
 
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells;
-  std::stringstream text(line);
-  for (std::string cell; std::getline(text, cell, ',');) cells.push_back(cell);
-  return cells;
-}
-
-std::size_t column(const std::vector<std::string>& names, const std::string& name, const std::string& file) {
-  for (std::size_t k = 0; k < names.size(); ++k)
-    if (names[k] == name) return k;
-  throw InputError(fmt::format("{}: has no column {}", file, name));
-}
-
 Columns read_columns(const CurveCommand& command) {
-  std::ifstream in(command.data);
-  std::string line;
-  if (!std::getline(in, line)) throw IoError(fmt::format("{}: cannot be read", command.data.string()));
-  const auto names = cells_of(line);
-  const auto x = column(names, command.x, command.data.string()),
-             y = column(names, command.y, command.data.string());
+  const CsvTable table = read_csv(command.data);
+  const std::size_t x = table.column(command.x), y = table.column(command.y);
   Columns columns;
-  for (int row = 2; std::getline(in, line); ++row) {
-    const auto cells = cells_of(line);
-    if (cells.size() <= std::max(x, y) || cells[x].empty() || cells[y].empty()) continue;  // a missing value
-    char *x_end = nullptr, *y_end = nullptr;
-    columns.x.push_back(std::strtod(cells[x].c_str(), &x_end));
-    columns.y.push_back(std::strtod(cells[y].c_str(), &y_end));
-    if (*x_end != '\0' || *y_end != '\0')
+  for (std::size_t k = 0; k < table.rows.size(); ++k) {
+    const auto& cells = table.rows[k];
+    if (cells[x].empty() || cells[y].empty()) continue;  // a missing value
+    columns.x.push_back(cell_number(cells[x]));
+    columns.y.push_back(cell_number(cells[y]));
+    if (!std::isfinite(columns.x.back()) || !std::isfinite(columns.y.back()))
       throw InputError(
-          fmt::format("{}:{}: {}, {} (must be numbers)", command.data.string(), row, cells[x], cells[y]));
+          fmt::format("{}:{}: {}, {} (must be numbers)", table.file, table.line[k], cells[x], cells[y]));
   }
   return columns;
 }

@@ -54,9 +54,9 @@ LineSpheres LineImages::choose(const LineFrame& frame, const LineLattice& lattic
   int low[3] = {}, high[3] = {};
   for (int k = 0; k < 3; ++k) {
     if (!(scene_.period[k] > 0)) continue;
-    const double way = -scene_.upstream_m * frame.w[k] / scene_.period[k];
-    low[k] = static_cast<int>(std::floor(std::min(0.0, way))) - 1;
-    high[k] = static_cast<int>(std::ceil(std::max(0.0, way))) + 1;
+    const double offset = -scene_.upstream_m * frame.w[k] / scene_.period[k];
+    low[k] = static_cast<int>(std::floor(std::min(0.0, offset))) - 1;
+    high[k] = static_cast<int>(std::ceil(std::max(0.0, offset))) + 1;
   }
   for (int a = low[0]; a <= high[0]; ++a)
     for (int b = low[1]; b <= high[1]; ++b)

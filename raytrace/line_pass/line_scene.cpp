@@ -97,7 +97,7 @@ bool edges_close(const std::vector<LineScene::Face>& faces) {
 bool edges_close_periodically(const std::vector<LineScene::Face>& faces, const Vec3& period,
                               double tolerance) {
   struct Edge {
-    Vec3 middle, way;
+    Vec3 middle, direction;
     bool matched = false;
   };
   std::vector<Edge> edges;
@@ -110,7 +110,7 @@ bool edges_close_periodically(const std::vector<LineScene::Face>& faces, const V
     Vec3 apart = a.middle - b.middle;
     for (int k = 0; k < 3; ++k)
       if (period[k] > 0) apart[k] -= period[k] * std::round(apart[k] / period[k]);
-    return norm(apart) < tolerance && norm(a.way + b.way) < tolerance;
+    return norm(apart) < tolerance && norm(a.direction + b.direction) < tolerance;
   };
   for (auto e = edges.begin(); e != edges.end(); ++e) {
     if (e->matched) continue;
@@ -287,7 +287,7 @@ double LineScene::room_for_images() const {
   return is_periodic() ? 2.0 * spheres().max_reach + 2 : 0;
 }
 
-/// An upstream way of five mean chords leaves so few line ends to the tracer that they cost no more than the
+/// An upstream stretch of five mean chords leaves so few line ends to the tracer that they cost no more than the
 /// images do.
 void LineScene::add_periods(const Enclosure& enclosure) {
   constexpr double chords = 5, most_periods = 20;

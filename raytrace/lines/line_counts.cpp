@@ -15,7 +15,7 @@ constexpr double events_per_block = 32768;  // 128 KiB: sorted in the second-lev
 constexpr int largest_unit = 1 << 30;
 
 /// A number in [0, 1) that belongs to a pair and a round of thinning.
-double lot(std::uint64_t seed, std::size_t i, std::int32_t j, std::uint32_t round) {
+double thinning_draw(std::uint64_t seed, std::size_t i, std::int32_t j, std::uint32_t round) {
   return random_uniform2(seed, 0x7468696e00000000u + round,
                          static_cast<std::uint64_t>(i) << 32 | static_cast<std::uint32_t>(j))[0];
 }
@@ -42,10 +42,10 @@ void PairCounts::count_events(std::size_t b, Scratch& scratch) {
   if (events.empty()) return;
   sort_events(events, room, packing_.row_bits + packing_.column_bits);
 
-  constexpr Pair end{~0u, 0};  // after all keys
+  constexpr PairCount end{~0u, 0};  // after all keys
   found.resize(events.size() + 1);
   std::size_t n = 0;
-  Pair sum{events[0] >> line_run_bits, 0};
+  PairCount sum{events[0] >> line_run_bits, 0};
   for (const std::uint32_t event : events) {
     found[n] = sum;
     const std::uint32_t key = event >> line_run_bits, before = key == sum.key ? sum.count : 0;
@@ -58,8 +58,8 @@ void PairCounts::count_events(std::size_t b, Scratch& scratch) {
   auto& pairs = blocks_[b].pairs;
   pairs.push_back(end);
   merged.resize(pairs.size() + n);
-  const Pair *p = pairs.data(), *q = found.data();
-  Pair* to = merged.data();
+  const PairCount *p = pairs.data(), *q = found.data();
+  PairCount* to = merged.data();
   while ((p->key & q->key) != end.key) {
     const std::uint32_t key = std::min(p->key, q->key);
     const bool old = p->key == key, now = q->key == key;
@@ -106,14 +106,16 @@ void PairCounts::merge(std::uint64_t seed) {
 }
 
 std::size_t PairCounts::thin(std::size_t b, std::uint64_t seed) {
-  const auto goes = [&](Pair& pair) {
+  const auto goes = [&](PairCount& pair) {
     if (pair.count >= static_cast<std::uint32_t>(unit_)) return false;
     const double n = std::exchange(pair.count, unit_);
-    return lot(seed, packing_.row(b, pair.key), packing_.column(pair.key), thinning_round_) * unit_ >= n;
+    return thinning_draw(seed, packing_.row(b, pair.key), packing_.column(pair.key), thinning_round_) *
+               unit_ >=
+           n;
   };
   auto& pairs = blocks_[b].pairs;
   std::size_t kept = 0;
-  for (Pair pair : pairs)
+  for (PairCount pair : pairs)
     if (!goes(pair)) pairs[kept++] = pair;
   pairs.resize(kept);
   return kept;
@@ -127,7 +129,7 @@ void PairCounts::sample(std::size_t b) {
   const auto known_end = blocks_[b].samples.cend();
   std::size_t row = 0;
   bool wanted = false;
-  for (const Pair& pair : blocks_[b].pairs) {
+  for (const PairCount& pair : blocks_[b].pairs) {
     if (const std::size_t at = packing_.row(b, pair.key) + 1; at != row) row = at, wanted = sampled(row - 1);
     if (!wanted) continue;
     while (known != known_end && known->key < pair.key) ++known;
@@ -190,7 +192,7 @@ PairCounts::Expanded PairCounts::expand() {
   Expanded all{std::vector<std::int64_t>(n + 1, 0), {}};
   std::vector<std::int64_t> below(n, 0);
   for (std::size_t b = 0; b < blocks_.size(); ++b)
-    for (const Pair& pair : blocks_[b].pairs) {
+    for (const PairCount& pair : blocks_[b].pairs) {
       const auto i = packing_.row(b, pair.key), j = static_cast<std::size_t>(packing_.column(pair.key));
       ++all.row_begin[i + 1];
       if (i != j) ++below[j];
@@ -200,7 +202,7 @@ PairCounts::Expanded PairCounts::expand() {
   std::vector<std::int64_t> above(n);
   for (std::size_t i = 0; i < n; ++i) above[i] = all.row_begin[i] + std::exchange(below[i], all.row_begin[i]);
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    for (const Pair& pair : blocks_[b].pairs) {
+    for (const PairCount& pair : blocks_[b].pairs) {
       const std::size_t i = packing_.row(b, pair.key);
       const std::int32_t j = packing_.column(pair.key);
       if (static_cast<std::size_t>(j) == i) {  // its own image, from both ends

@@ -46,7 +46,7 @@ class PairCounts {
   SymmetricCounts finish();
 
  private:
-  struct Pair {
+  struct PairCount {
     std::uint32_t key, count;
   };
   struct Sample {
@@ -55,12 +55,12 @@ class PairCounts {
     float spread;         ///< sum over the replicates of (count - mean)^2
   };
   struct Block {
-    std::vector<Pair> pairs;      ///< keys ascend
-    std::vector<Sample> samples;  ///< of those in sampled rows
+    std::vector<PairCount> pairs;  ///< keys ascend
+    std::vector<Sample> samples;   ///< of those in sampled rows
   };
   struct Scratch {
     std::vector<std::uint32_t> events, room;
-    std::vector<Pair> found, merged;
+    std::vector<PairCount> found, merged;
   };
   struct Expanded;
   struct VariancePools;

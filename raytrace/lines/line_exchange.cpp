@@ -24,7 +24,7 @@ namespace {
 constexpr double least_events = 1 << 22;
 constexpr double merged_directions = 8;
 
-struct Sweep {
+struct LineSums {
   SymmetricCounts counts;
   double unit_m2;  ///< X = unit S
   MeanChord chord;
@@ -63,7 +63,7 @@ int chord_directions(const LineScene& scene) {
       std::clamp<std::size_t>(spheres_wanted / std::max<std::size_t>(1, scene.x.size()), 1, most));
 }
 
-Sweep sweep(const LineScene& scene, const LineOptions& options, int directions) {
+LineSums sum_over_lines(const LineScene& scene, const LineOptions& options, int directions) {
   const std::size_t surfaces = scene.surface_count();
   std::vector<char> kind(surfaces, 1);
   std::fill_n(kind.begin(), scene.x.size(), 0);
@@ -134,13 +134,13 @@ double relative_sum_error(const SymmetricCounts& counts, std::size_t spheres,
   return sums.relative_error(quantity.relative_to_rms);
 }
 
-Sweep sweep_to_target(const LineScene& scene, const LineOptions& options, const StatedQuantity& quantity,
-                      LineReport* report) {
+LineSums sums_to_target(const LineScene& scene, const LineOptions& options, const StatedQuantity& quantity,
+                        LineReport* report) {
   int directions = options.directions;
   std::vector<LineRound> rounds;
   std::int64_t ends = 0;
   for (;;) {
-    Sweep result = sweep(scene, options, directions);
+    LineSums result = sum_over_lines(scene, options, directions);
     ends += result.ends;
     const double error = relative_sum_error(result.counts, scene.x.size(), quantity);
     rounds.push_back({directions, error});
@@ -189,7 +189,7 @@ std::array<std::vector<double>, 4> variance_factors(const SymmetricCounts& count
 HitCounts sweep_view_factors(const Enclosure& enclosure, const LineOptions& options, LineReport* report) {
   check_line_options(options);
   const LineScene scene(enclosure, options.lines_per_disc);
-  Sweep s = sweep_to_target(scene, options, stated_quantity(enclosure, options.hot_walls), report);
+  LineSums s = sums_to_target(scene, options, stated_quantity(enclosure, options.hot_walls), report);
   const SymmetricCounts& counts = s.counts;
   const std::size_t n = scene.surface_count();
   HitCounts hits;
@@ -217,7 +217,7 @@ ExchangeAreas sweep_exchange_areas(const Enclosure& enclosure, const LineOptions
                                    LineReport* report) {
   check_line_options(options);
   const LineScene scene(enclosure, options.lines_per_disc);
-  Sweep s = sweep_to_target(scene, options, stated_quantity(enclosure, options.hot_walls), report);
+  LineSums s = sums_to_target(scene, options, stated_quantity(enclosure, options.hot_walls), report);
   ExchangeAreas areas;
   areas.area_m2 = surface_areas(enclosure);
   areas.pattern = std::move(s.counts.pattern);

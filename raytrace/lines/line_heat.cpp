@@ -41,8 +41,8 @@ void receive_pairs(LinePass& pass, const std::vector<std::int32_t>& power, std::
 }
 
 /// Sum of power differences over the line ends of every surface, for each replicate.
-std::vector<Sums> sweep(const LineScene& scene, const std::vector<std::int32_t>& power,
-                        const LineOptions& options, int directions) {
+std::vector<Sums> sum_over_lines(const LineScene& scene, const std::vector<std::int32_t>& power,
+                                 const LineOptions& options, int directions) {
   std::vector<Sums> total(options.replicates, Sums(scene.surface_count(), 0));
   const std::vector<std::int32_t> sorted_power = scene.sorted(power);
 #pragma omp parallel num_threads(line_threads(options.threads))
@@ -136,7 +136,7 @@ std::vector<double> sweep_black_heat(const Enclosure& enclosure,
   const FixedPoint fixed(emissive_power_W_m2);
   std::vector<LineRound> rounds;
   for (int directions = options.directions;;) {
-    const auto total = sweep(scene, fixed.power, options, directions);
+    const auto total = sum_over_lines(scene, fixed.power, options, directions);
     check_balance(total);
     const double unit_W = 2 * scene.spacing * scene.spacing / directions * fixed.unit_W_m2;
     Estimate e = estimate(total, unit_W);

@@ -9,13 +9,13 @@ namespace granrad {
 
 namespace {
 
-struct Turn {
+struct CosineSine {
   double cosine, sine;
 };
 
 /// cos and sin of 2 pi v, v in [0, 1], within 1e-15: series on the nearest quarter. The same bits on every
 /// machine, which those of the C library are not.
-Turn turn(double v) {
+CosineSine cosine_sine(double v) {
   const double quarter = std::nearbyint(4 * v), x = (v - 0.25 * quarter) * (2 * pi), y = x * x;
   double c = 1, s = 1;
   for (int k = 16; k >= 2; k -= 2) {
@@ -37,7 +37,7 @@ Turn turn(double v) {
 
 Vec3 direction_on_sphere(double u, double v) {
   const double z = 1 - 2 * u, s = std::sqrt(std::max(0.0, 1 - z * z));
-  const Turn t = turn(v);
+  const CosineSine t = cosine_sine(v);
   return {s * t.cosine, s * t.sine, z};
 }
 
@@ -48,7 +48,7 @@ Vec3 cosine_direction(const Vec3& n, double u, double v) {
   const double sign = std::copysign(1.0, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
   const Vec3 t1{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, t2{b, sign + n.y * n.y * a, -n.y};
   const double s = std::sqrt(u), c = std::sqrt(1 - u);
-  const Turn t = turn(v);
+  const CosineSine t = cosine_sine(v);
   return t1 * (s * t.cosine) + t2 * (s * t.sine) + n * c;
 }
 

@@ -21,13 +21,13 @@ namespace granrad {
 namespace {
 
 /// What one surface's rays found.
-struct Row {
+struct TracedRow {
   std::vector<HitEntry> entries;
   std::int64_t launched = 0, leaked = 0, chords = 0;
   double chord_sum_m = 0, chord_square_sum_m2 = 0;
   HitEntry stated;  ///< the walls whose error is stated, as if they were one
 
-  void add_chords(const Row& more) {
+  void add_chords(const TracedRow& more) {
     leaked += more.leaked;
     chords += more.chords;
     chord_sum_m += more.chord_sum_m;
@@ -74,8 +74,8 @@ class RowTracer {
   const std::vector<char>& stated() const { return stated_; }
 
   /// Throws TraceStopped.
-  std::vector<Row> trace(const std::vector<std::int32_t>& surfaces) {
-    std::vector<Row> rows(surfaces.size());
+  std::vector<TracedRow> trace(const std::vector<std::int32_t>& surfaces) {
+    std::vector<TracedRow> rows(surfaces.size());
     const std::vector<std::size_t> order = neighbours_together(surfaces);
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
     for (std::size_t n = 0; n < order.size(); ++n) {
@@ -113,8 +113,8 @@ class RowTracer {
     return tallies_[static_cast<std::size_t>(omp_get_thread_num())];
   }
 
-  Row trace_surface(std::int32_t surface, HitTally& tally) {
-    Row row;
+  TracedRow trace_surface(std::int32_t surface, HitTally& tally) {
+    TracedRow row;
     const std::int64_t rays = per_replicate(surface);
     for (std::int32_t replicate = 0; replicate < replicates_; ++replicate) {
       row.add_chords(trace_rays(surface, replicate, 0, rays, tally));
@@ -126,9 +126,9 @@ class RowTracer {
   }
 
   /// The same, a part of a replicate at a time.
-  Row trace_in_parts(std::int32_t surface) {
+  TracedRow trace_in_parts(std::int32_t surface) {
     const std::int64_t rays = per_replicate(surface), parts = (rays + part_rays - 1) / part_rays;
-    std::vector<Row> found(static_cast<std::size_t>(parts * replicates_));
+    std::vector<TracedRow> found(static_cast<std::size_t>(parts * replicates_));
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
     for (std::size_t k = 0; k < found.size(); ++k) {
       const auto part = static_cast<std::int64_t>(k) % parts;
@@ -138,7 +138,7 @@ class RowTracer {
       own_tally().end_replicate();
       found[k].entries = own_tally().take();
     }
-    Row row;
+    TracedRow row;
     HitTally& tally = tallies_[0];
     for (std::size_t k = 0; k < found.size(); ++k) {
       row.add_chords(found[k]);
@@ -150,7 +150,7 @@ class RowTracer {
     return row;
   }
 
-  void end_replicate(Row& row, HitTally& tally) const {
+  void end_replicate(TracedRow& row, HitTally& tally) const {
     const std::int64_t hits = tally.hits_on(stated_);
     row.stated.hits += hits;
     row.stated.replicate_square_sum += static_cast<double>(hits) * static_cast<double>(hits);
@@ -158,10 +158,10 @@ class RowTracer {
   }
 
   /// Counts rays [begin, end) of a replicate into `tally`; of the row, fills what is said of chords.
-  Row trace_rays(std::int32_t surface, std::int32_t replicate, std::int64_t begin, std::int64_t end,
-                 HitTally& tally) {
+  TracedRow trace_rays(std::int32_t surface, std::int32_t replicate, std::int64_t begin, std::int64_t end,
+                       HitTally& tally) {
     constexpr std::int64_t between_looks = 4096;
-    Row row;
+    TracedRow row;
     const RaySampler sampler(options_.sampling, options_.seed, surface, replicate);
     for (std::int64_t from = begin; from < end; from += between_looks) {
       const std::int64_t to = std::min(end, from + between_looks);
@@ -235,12 +235,13 @@ bool may_outgrow(const std::vector<std::int64_t>& rays, std::size_t limit_bytes)
 }
 
 /// Smallest power of two that keeps the pairs of all surfaces, judged by a sample of rows, within memory.
-std::int64_t thinning_unit(const std::vector<Row>& sample, std::size_t surfaces, std::size_t limit_bytes) {
+std::int64_t thinning_unit(const std::vector<TracedRow>& sample, std::size_t surfaces,
+                           std::size_t limit_bytes) {
   const double bytes = static_cast<double>(limit_bytes) - bytes_per_surface * static_cast<double>(surfaces);
   const double pairs_per_row = std::max(1.0, bytes / bytes_per_pair / static_cast<double>(surfaces));
   for (std::int64_t unit = 1;; unit *= 2) {
     double kept = 0;
-    for (const Row& row : sample)
+    for (const TracedRow& row : sample)
       for (const HitEntry& e : row.entries)
         kept += std::min(1.0, static_cast<double>(e.hits) / static_cast<double>(unit));
     if (kept <= pairs_per_row * static_cast<double>(sample.size()) || unit > std::int64_t{1} << 40)
@@ -274,7 +275,7 @@ class CountBuilder {
     counts_.thinning_unit = thinning_.unit();
   }
 
-  void append(const Row& row) {
+  void append(const TracedRow& row) {
     const auto i = static_cast<std::int32_t>(counts_.launched.size());
     const double area = counts_.area_m2[static_cast<std::size_t>(i)];
     if (replicates_ > 1) {
@@ -383,13 +384,13 @@ HitCounts trace_rows(const Enclosure& enclosure, const std::vector<double>& emit
   const std::size_t spheres = enclosure.sphere_count();
   std::vector<std::int32_t> walls(surfaces - spheres);
   std::iota(walls.begin(), walls.end(), static_cast<std::int32_t>(spheres));
-  const std::vector<Row> wall_rows = tracer.trace(walls);
+  const std::vector<TracedRow> wall_rows = tracer.trace(walls);
   for (std::size_t begin = 0; begin < spheres; begin += block) {
     std::vector<std::int32_t> some(std::min(block, spheres - begin));
     std::iota(some.begin(), some.end(), static_cast<std::int32_t>(begin));
-    for (const Row& row : tracer.trace(some)) builder.append(row);
+    for (const TracedRow& row : tracer.trace(some)) builder.append(row);
   }
-  for (const Row& row : wall_rows) builder.append(row);
+  for (const TracedRow& row : wall_rows) builder.append(row);
   builder.finish();
   return counts;
 }

@@ -15,24 +15,13 @@
 #include "coupling/heat/heat_step.h"
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
+#include "tests/alumina.h"
 #include "tests/source_dir.h"
 
 namespace granrad {
 namespace {
 
 constexpr double radius = 4e-4;
-
-Material alumina() {
-  Material m;
-  m.name = "alumina";
-  m.density_kg_m3 = 3984;
-  m.specific_heat_J_kgK = 755;
-  m.conductivity_W_mK = 33;
-  m.youngs_modulus_Pa = 5e6;
-  m.real_youngs_modulus_Pa = 414e9;
-  m.poisson_ratio = 0.23;
-  return m;
-}
 
 Bed pair_at(double distance, double second_radius = radius) {
   Bed bed;

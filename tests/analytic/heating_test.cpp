@@ -10,6 +10,7 @@
 #include "coupling/heat/radiosity_source.h"
 #include "dem/base/constants.h"
 #include "raytrace/paths/path_source.h"
+#include "tests/hot_box.h"
 
 namespace granrad {
 namespace {
@@ -17,18 +18,7 @@ namespace {
 constexpr double wall_K = 1000, size = 0.01;
 
 Bed lone_sphere(double emissivity = 1) {
-  Bed bed;
-  Material m;
-  m.density_kg_m3 = 3984;
-  m.specific_heat_J_kgK = 755;
-  m.emissivity = emissivity;
-  bed.materials = {m};
-  bed.box = {{0, 0, 0}, {size, size, size}};
-  for (auto wall : box_walls(bed.box)) {
-    wall.role = WallRole::isothermal;
-    wall.temperature_K = wall_K;
-    bed.walls.push_back(wall);
-  }
+  Bed bed = hot_box(size, wall_K, emissivity);
   bed.add({0.004, 0.005, 0.006}, {}, 4e-4, 300);
   return bed;
 }

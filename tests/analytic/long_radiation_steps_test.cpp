@@ -12,6 +12,7 @@
 #include "coupling/heat/radiosity_source.h"
 #include "dem/base/constants.h"
 #include "raytrace/lines/line_sweep.h"
+#include "tests/hot_box.h"
 
 namespace granrad {
 namespace {
@@ -20,19 +21,7 @@ constexpr double radius_m = 1e-5, size_m = 1e-4;
 
 /// Ten-micrometre spheres in a row, the first at `first_K`, in a black box at wall_K.
 Bed row_of_spheres(double wall_K, double first_K, double others_K, double emissivity) {
-  Bed bed;
-  Material m;
-  m.density_kg_m3 = 3984;
-  m.specific_heat_J_kgK = 755;
-  m.emissivity = emissivity;
-  bed.materials = {m};
-  bed.box = {{0, 0, 0}, {size_m, size_m, size_m}};
-  for (auto wall : box_walls(bed.box)) {
-    wall.role = WallRole::isothermal;
-    wall.temperature_K = wall_K;
-    wall.emissivity = 1;
-    bed.walls.push_back(wall);
-  }
+  Bed bed = hot_box(size_m, wall_K, emissivity);
   for (int k = 0; k < 4; ++k)
     bed.add({(2 * k + 1.5) * 1.1e-5, 5e-5, 5e-5}, {}, radius_m, k == 0 ? first_K : others_K);
   return bed;

@@ -194,7 +194,7 @@ struct Rival {
   double best = 0;
 };
 
-/// All rivals take turns this often and keep their best: what else the machine does changes within seconds.
+/// Each rival is timed this often, in rotation, and its fastest time counts: other load changes within seconds.
 constexpr int rounds = 3;
 
 int run(const std::filesystem::path& folder, bool quick) {

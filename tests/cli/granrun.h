@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/scene_text.h"
 #include "tests/temporary_folder.h"
 
 namespace granrad::cli {
@@ -70,39 +71,16 @@ inline pid_t start_granrun(const std::vector<std::string>& arguments) {
 }
 
 /// A small plug flow (about 40 particles) that exercises everything: feed, contacts, gas, paths.
-inline const char* small_plug = R"([scene]
+inline const std::string small_plug = R"([scene]
 name = "small plug"
 end_time_s = 0.04
-[material]
-density_kg_m3 = 3984
-specific_heat_J_kgK = 755
-conductivity_W_mK = 33
-youngs_modulus_Pa = 5e6
-real_youngs_modulus_Pa = 414e9
-poisson_ratio = 0.23
-restitution = 0.45
-friction = 0.4
-[gas]
+)" + scene_text::alumina + R"([gas]
 [particles]
 diameter_m = "0.8 mm"
 temperature_K = 300
 [box]
 size_m = [0.004, 0.003, 0.006]
-[walls.x_min]
-role = "adiabatic"
-[walls.x_max]
-role = "adiabatic"
-[walls.y_min]
-role = "isothermal"
-temperature_K = 1000
-[walls.y_max]
-role = "isothermal"
-temperature_K = 1000
-[walls.z_min]
-role = "adiabatic"
-[walls.z_max]
-role = "adiabatic"
-[feed]
+)" + scene_text::hot_across_y + R"([feed]
 kind = "plug"
 solid_fraction = 0.25
 velocity_m_s = 0.1

@@ -20,16 +20,8 @@ std::string pile(const std::string& file) {
 name = "pile"
 end_time_s = 0.3
 gravity_m_s2 = [2, 0, -9.6]
-[material]
-density_kg_m3 = 3984
-specific_heat_J_kgK = 755
-conductivity_W_mK = 33
-youngs_modulus_Pa = 5e6
-real_youngs_modulus_Pa = 414e9
-poisson_ratio = 0.23
-restitution = 0.45
-friction = 0.4
-[particles]
+)" + scene_text::alumina +
+         R"([particles]
 diameter_m = "0.8 mm"
 temperature_K = 300
 file = ")" +

@@ -16,16 +16,8 @@ std::string falling_sphere(const std::string& particles) {
   return R"([scene]
 name = "falling sphere"
 end_time_s = 0.03
-[material]
-density_kg_m3 = 3984
-specific_heat_J_kgK = 755
-conductivity_W_mK = 33
-youngs_modulus_Pa = 5e6
-real_youngs_modulus_Pa = 414e9
-poisson_ratio = 0.23
-restitution = 0.45
-friction = 0.4
-emissivity = 0.8
+)" + scene_text::alumina +
+         R"(emissivity = 0.8
 [gas]
 [particles]
 diameter_m = "0.8 mm"
@@ -36,21 +28,8 @@ size_m = [0.004, 0.004, 0.006]
 [region]
 min_m = [0, 0, 0]
 max_m = [0.004, 0.004, 0.003]
-[walls.x_min]
-role = "adiabatic"
-[walls.x_max]
-role = "adiabatic"
-[walls.y_min]
-role = "isothermal"
-temperature_K = 1000
-[walls.y_max]
-role = "isothermal"
-temperature_K = 1000
-[walls.z_min]
-role = "adiabatic"
-[walls.z_max]
-role = "adiabatic"
-[surroundings]
+)" + scene_text::hot_across_y +
+         R"([surroundings]
 temperature_K = 300
 [dem]
 step_s = 1e-5

@@ -13,19 +13,11 @@ using namespace granrad::cli;
 namespace {
 
 /// Two plates across y, 20 diameters of 0.8 mm apart, periodic at the sides; gas lenses alone conduct.
-const char* slab = R"([scene]
+const std::string slab = R"([scene]
 name = "slab"
 end_time_s = 30
-[material]
-density_kg_m3 = 3984
-specific_heat_J_kgK = 755
-conductivity_W_mK = 33
-youngs_modulus_Pa = 5e6
-real_youngs_modulus_Pa = 414e9
-poisson_ratio = 0.23
-restitution = 0.45
-friction = 0.4
-[gas]
+)" + scene_text::alumina +
+                         R"([gas]
 conductivity_W_mK = 0.2
 lens_radius_ratio = 1.6
 [particles]

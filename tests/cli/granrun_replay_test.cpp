@@ -20,16 +20,8 @@ std::string scene(const std::string& rest) {
   return R"([scene]
 name = "plug"
 end_time_s = 0.2
-[material]
-density_kg_m3 = 3984
-specific_heat_J_kgK = 755
-conductivity_W_mK = 33
-youngs_modulus_Pa = 5e6
-real_youngs_modulus_Pa = 414e9
-poisson_ratio = 0.23
-restitution = 0.45
-friction = 0.4
-[gas]
+)" + scene_text::alumina +
+         R"([gas]
 [box]
 size_m = ["10 mm", "4 mm", "10 mm"]
 [walls]

@@ -145,8 +145,9 @@ TEST(Layering, IncludesFollowTheArrows) {
 // The bottom of the house is a folder of its own: what lies below it in the tree lies above it in the arrows.
 TEST(Layering, BaseIncludesOnlyItself) {
   for (const auto& include : all_includes())
-    if (fs::path(include.file).parent_path() == "dem/base" && include.header.starts_with("dem/"))
+    if (fs::path(include.file).parent_path() == "dem/base" && include.header.starts_with("dem/")) {
       EXPECT_EQ(fs::path(include.header).parent_path(), "dem/base") << include.file;
+    }
 }
 
 TEST(Layering, OwnHeadersAreIncludedFromTheRoot) {

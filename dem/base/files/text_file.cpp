@@ -6,6 +6,8 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
+#include <sstream>
 
 #include "dem/base/error.h"
 
@@ -30,6 +32,14 @@ void write_text_file(const std::filesystem::path& file, const std::string& text)
     std::remove(temporary.c_str());
     throw IoError(fmt::format("{}: cannot write ({})", file.string(), failure.message()));
   }
+}
+
+std::string read_text_file(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::stringstream text;
+  text << in.rdbuf();
+  if (!in || std::filesystem::is_directory(file)) throw IoError(fmt::format("{}: cannot be read", file.string()));
+  return text.str();
 }
 
 }  // namespace granrad

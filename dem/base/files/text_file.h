@@ -8,4 +8,7 @@ namespace granrad {
 /// Creates the folder. Throws IoError (folder not writable, disk full).
 void write_text_file(const std::filesystem::path& file, const std::string& text);
 
+/// All of a file. Throws IoError.
+std::string read_text_file(const std::filesystem::path& file);
+
 }  // namespace granrad

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/base/constants.h"
 #include "dem/base/error.h"
 #include "dem/base/files/data_folder.h"
 #include "dem/base/suggestion.h"
@@ -97,11 +98,9 @@ std::optional<double> TomlTable::number_or_auto(const Key& key, const NumberRule
 std::int64_t TomlTable::integer(const Key& key, std::int64_t min, std::int64_t max,
                                 std::optional<std::int64_t> fallback) {
   const bool bounded = max < std::numeric_limits<std::int32_t>::max();
-  KeyUse& use =
-      node_->use(key, KeyKind::integer,
-                 {.min = static_cast<double>(min),
-                  .max = bounded ? static_cast<double>(max) : std::numeric_limits<double>::infinity()},
-                 !fallback);
+  KeyUse& use = node_->use(
+      key, KeyKind::integer,
+      {.min = static_cast<double>(min), .max = bounded ? static_cast<double>(max) : infinity}, !fallback);
   if (fallback) use.fallback = fmt::format("{}", *fallback);
   const std::int64_t allowed = std::clamp<std::int64_t>(fallback.value_or(min), min, max);
   const std::string expected = max == std::numeric_limits<std::int64_t>::max()
