@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <string>
 
 namespace granrad::scene_text {
@@ -15,21 +16,20 @@ restitution = 0.45
 friction = 0.4
 )";
 
+/// The six walls of the box, adiabatic but for those with a temperature in K.
+inline std::string walls(const std::map<std::string, int>& temperature_K) {
+  std::string text;
+  for (const char* name : {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"}) {
+    const auto given = temperature_K.find(name);
+    text += std::string("[walls.") + name + "]\nrole = ";
+    text += given == temperature_K.end()
+                ? "\"adiabatic\"\n"
+                : "\"isothermal\"\ntemperature_K = " + std::to_string(given->second) + "\n";
+  }
+  return text;
+}
+
 /// Two walls at 1000 K across y, four adiabatic ones.
-inline const std::string hot_across_y = R"([walls.x_min]
-role = "adiabatic"
-[walls.x_max]
-role = "adiabatic"
-[walls.y_min]
-role = "isothermal"
-temperature_K = 1000
-[walls.y_max]
-role = "isothermal"
-temperature_K = 1000
-[walls.z_min]
-role = "adiabatic"
-[walls.z_max]
-role = "adiabatic"
-)";
+inline const std::string hot_across_y = walls({{"y_min", 1000}, {"y_max", 1000}});
 
 }  // namespace granrad::scene_text

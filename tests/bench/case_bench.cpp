@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "dem/io/snapshot.h"
+#include "tests/bench/bench_arguments.h"
 #include "tests/bench/dem_bench_peers.h"
 #include "tests/source_dir.h"
 
@@ -95,16 +96,6 @@ int run(const fs::path& folder, bool quick) {
 }  // namespace granrad::bench
 
 int main(int argc, char** argv) {
-  bool quick = false;
-  std::string folder;
-  for (int k = 1; k < argc; ++k)
-    if (const std::string_view word = argv[k]; word == "--quick")
-      quick = true;
-    else
-      folder = word;
-  if (folder.empty()) {
-    fmt::print(stderr, "usage: case_bench [--quick] FOLDER\n");
-    return 2;
-  }
-  return granrad::bench::run(folder, quick);
+  const granrad::bench::BenchArguments given(argc, argv);
+  return given.folder.empty() ? 2 : granrad::bench::run(given.folder, given.quick);
 }

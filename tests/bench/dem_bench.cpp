@@ -15,6 +15,7 @@
 #include "coupling/heat/heat_step.h"
 #include "dem/base/random.h"
 #include "dem/native/native_engine.h"
+#include "tests/bench/bench_arguments.h"
 #include "tests/bench/dem_bench_peers.h"
 #include "tests/settled_bed.h"
 #include "tests/source_dir.h"
@@ -267,18 +268,6 @@ int run(const std::filesystem::path& folder, bool quick) {
 }  // namespace granrad::bench
 
 int main(int argc, char** argv) {
-  bool quick = false;
-  std::string folder;
-  for (int k = 1; k < argc; ++k) {
-    const std::string_view word = argv[k];
-    if (word == "--quick")
-      quick = true;
-    else
-      folder = word;
-  }
-  if (folder.empty()) {
-    fmt::print(stderr, "usage: dem_bench [--quick] FOLDER\n");
-    return 2;
-  }
-  return granrad::bench::run(folder, quick);
+  const granrad::bench::BenchArguments given(argc, argv);
+  return given.folder.empty() ? 2 : granrad::bench::run(given.folder, given.quick);
 }

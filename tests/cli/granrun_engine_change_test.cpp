@@ -28,20 +28,8 @@ file = ")" +
          file + R"("
 [box]
 size_m = [0.004, 0.003, 0.006]
-[walls.x_min]
-role = "adiabatic"
-[walls.x_max]
-role = "adiabatic"
-[walls.y_min]
-role = "adiabatic"
-[walls.y_max]
-role = "adiabatic"
-[walls.z_min]
-role = "isothermal"
-temperature_K = 400
-[walls.z_max]
-role = "adiabatic"
-[dem]
+)" + scene_text::walls({{"z_min", 400}}) +
+         R"([dem]
 step_s = 1e-5
 [output]
 every_s = 0.01

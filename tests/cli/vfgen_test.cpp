@@ -11,6 +11,8 @@
 #include "dem/base/files/hdf5_file.h"
 #include "raytrace/exact.h"
 #include "raytrace/rays/view_factor_file.h"
+#include "tests/scene_text.h"
+#include "tests/scene_text.h"
 #include "tests/source_dir.h"
 
 namespace {
@@ -382,7 +384,7 @@ rays = 300
 }
 
 /// A short plug of 0.5 mm spheres, dilute and fast: tens of milliseconds of residence.
-const char* short_plug = R"([scene]
+const std::string short_plug = R"([scene]
 name = "short_plug"
 end_time_s = 0.1
 [material]
@@ -398,19 +400,7 @@ diameter_m = "0.8 mm"
 temperature_K = 300
 [box]
 size_m = [0.006, 0.004, 0.008]
-[walls.x_min]
-role = "adiabatic"
-[walls.x_max]
-role = "adiabatic"
-[walls.y_min]
-role = "adiabatic"
-[walls.y_max]
-role = "adiabatic"
-[walls.z_min]
-role = "adiabatic"
-[walls.z_max]
-role = "adiabatic"
-[feed]
+)" + granrad::scene_text::walls({}) + R"([feed]
 kind = "plug"
 solid_fraction = 0.2
 mass_flow_kg_s = "2 g/s"

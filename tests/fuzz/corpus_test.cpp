@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "dem/base/files/text_file.h"
 #include "dem/base/random.h"
 #include "tests/fuzz/file_targets.h"
 #include "tests/source_dir.h"
@@ -14,18 +15,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string bytes_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 TEST(FuzzCorpus, IsReadOrRefused) {
   constexpr int damages = 25;
   for (const auto& target : file_targets()) {
     std::size_t files = 0;
     for (const auto& entry :
          fs::directory_iterator(fs::path(source_dir()) / "tests/fuzz/corpus" / target.name)) {
-      const std::string bytes = bytes_of(entry.path());
+      const std::string bytes = read_text_file(entry.path());
       ++files;
       EXPECT_NO_THROW(target.feed(bytes)) << entry.path();
       for (int k = 0; k < damages && !bytes.empty(); ++k) {

@@ -13,6 +13,7 @@
 #include "dem/packing/packing.h"
 #include "fit/fitting/fit_correlation.h"
 #include "raytrace/rays/view_factors.h"
+#include "tests/packed_beds.h"
 #include "tests/source_dir.h"
 
 namespace granrad {
@@ -31,17 +32,7 @@ CorrelationTable transmittance(double phi, double a, double b, double t0, double
 }
 
 Enclosure bed(const Box& box, double phi, std::uint64_t seed) {
-  PackingRequest request;
-  request.where.box = box;
-  request.radius_m = equal_radii(box, phi, 0.0004);
-  request.seed = seed;
-  Enclosure enclosure;
-  enclosure.centre_m = pack_spheres(request);
-  enclosure.radius_m = request.radius_m;
-  enclosure.box = box;
-  const auto walls = box_walls(box);
-  enclosure.walls.assign(walls.begin(), walls.end());
-  return enclosure;
+  return packed_bed(box, box, phi, 0.0004, seed);
 }
 
 /// The value in `column` of the first row of a reference table whose leading cells are `key`.

@@ -7,6 +7,7 @@
 
 #include "dem/base/error.h"
 #include "dem/base/files/hdf5_file.h"
+#include "dem/base/files/text_file.h"
 #include "dem/base/random.h"
 #include "raytrace/rays/view_factor_file.h"
 #include "tests/enclosures.h"
@@ -16,11 +17,6 @@ namespace granrad {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string bytes_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 ViewFactorFile traced() {
   ViewFactorFile content;
@@ -55,7 +51,7 @@ TEST_F(DamagedHdf5, ViewFactorsComeBack) {
 }
 
 TEST_F(DamagedHdf5, AFlippedByteIsNoticedOrStandsInUnusedSpace) {
-  const std::string bytes = bytes_of(good_);
+  const std::string bytes = read_text_file(good_);
   for (int k = 0; k < 200; ++k) {
     std::string damaged = bytes;
     const auto at = random_bits(5, 1, k)[0] % bytes.size();
@@ -74,7 +70,7 @@ TEST_F(DamagedHdf5, AFlippedByteIsNoticedOrStandsInUnusedSpace) {
 
 // Planted and caught (the read does not end): free space of the heap that says less than what is left.
 TEST_F(DamagedHdf5, AHeapOfTextsThatIsDamagedIsReadToItsEnd) {
-  const std::string bytes = bytes_of(good_);
+  const std::string bytes = read_text_file(good_);
   const std::size_t heap = bytes.find("GCOL");
   ASSERT_NE(heap, std::string::npos);
   for (std::size_t at = heap; at < std::min(heap + 300, bytes.size()); ++at) {
@@ -162,7 +158,7 @@ TEST_F(DamagedHdf5, TextsOfOlderFilesAreReadAndTheirHeapIsNotTrusted) {
   write_old_texts(good_, pointers);
   EXPECT_EQ(Hdf5Reader(good_).read_texts("/names"), texts);
   EXPECT_EQ(Hdf5Reader(good_).text_attribute("/", "method"), "embree");
-  const std::string bytes = bytes_of(good_);
+  const std::string bytes = read_text_file(good_);
   const auto heap = bytes.find("GCOL");
   ASSERT_NE(heap, bytes.npos);
   for (std::size_t at = heap; at < heap + 160; ++at)
