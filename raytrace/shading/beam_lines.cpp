@@ -61,8 +61,8 @@ double place_across(double offset, double u) {
 BeamLines::BeamLines() {
   // multiples of the powers of 1/x, x^5 = x + 1: an even lattice in four dimensions
   constexpr double step[4] = {0.8566748838545029, 0.733891856627126, 0.6287067210378086, 0.53859725722361};
-  for (int bin = 0; bin <= static_cast<int>((longest - 1) * bins_per_diameter); ++bin) {
-    const double s = 1 + (bin + 0.5) / bins_per_diameter;
+  for (int bin = 0; bin < near_bins + far_bins; ++bin) {
+    const double s = distance_of(bin);
     const AngleTable angles(s);
     Set& set = sets_.emplace_back();
     for (std::size_t k = 0; k < count; ++k) {
@@ -82,31 +82,36 @@ BeamLines::BeamLines() {
       set.point_x[k] = static_cast<float>(-x * cosine * c - y * n);
       set.point_y[k] = static_cast<float>(-x * cosine * n + y * c);
       set.point_z[k] = static_cast<float>(x * sine);
-      set.end[k] = static_cast<float>(s * cosine);
     }
   }
 }
 
+/// The middle of a bin.
+double BeamLines::distance_of(int bin) {
+  if (bin < near_bins) return 1 + (bin + 0.5) / bins_per_diameter;
+  return near / (1 - (bin - near_bins + 0.5) / far_bins);
+}
+
 const BeamLines::Set& BeamLines::at(double distance) const {
-  const auto bin = static_cast<std::size_t>(std::max(0.0, (distance - 1) * bins_per_diameter));
-  return sets_[std::min(bin, sets_.size() - 1)];
+  const int bin = distance < near ? static_cast<int>((distance - 1) * bins_per_diameter)
+                                  : near_bins + static_cast<int>((1 - near / distance) * far_bins);
+  return sets_[static_cast<std::size_t>(std::clamp(bin, 0, near_bins + far_bins - 1))];
 }
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 __attribute__((target_clones("avx512f", "avx2", "default")))
 #endif
-void BlockedLines::add(const BeamLines::Set& lines, float x, float y, float z, float radius2) {
+void BlockedLines::add(const BeamLines::Set& lines, float distance, float x, float y, float z, float radius2) {
+  std::int32_t sum = 0;
   for (std::size_t k = 0; k < BeamLines::count; ++k) {
     const float along = x * lines.direction_x[k] + y * lines.direction_y[k] + z * lines.direction_z[k];
     const float dx = x - lines.point_x[k], dy = y - lines.point_y[k], dz = z - lines.point_z[k];
     const float across2 = dx * dx + dy * dy + dz * dz - along * along;
-    const bool hit = (across2 < radius2) & (along > 0) & (along < lines.end[k]);
-    blocked[k] = hit ? 1.0f : blocked[k];
+    const bool hit = (across2 < radius2) & (along > 0) & (along < distance * lines.direction_z[k]);
+    blocked_[k] |= static_cast<std::int32_t>(hit);
+    sum += blocked_[k];
   }
-}
-
-double BlockedLines::open_share() const {
-  return 1 - std::accumulate(blocked.begin(), blocked.end(), 0.0f) / static_cast<double>(BeamLines::count);
+  blocked_count_ = sum;
 }
 
 }  // namespace granrad

@@ -17,7 +17,7 @@ void refuse_what_shading_cannot_serve(const Enclosure& enclosure);
 
 /// Exchange areas X_ij = A_i F_ij of equal spheres (radii within 1 %) by explicit shading, and of walls by rays; nothing is
 /// fitted. Not yet closed.
-///  - sphere-sphere, up to BeamLines::longest diameters apart (beyond is 0.02 % of F, which closure gives back): the exact
+///  - sphere-sphere, as far as visible_pairs follows them (beyond is 0.05 % of F, which closure gives back): the exact
 ///    factor of the two times the share of 256 lines between them that no sphere, and no wall of an enclosure that is not
 ///    convex, blocks. rms error of F in random beds 1e-4 (solid fractions 0.07 to 0.43).
 ///  - walls: their rows by Embree, every sphere by reciprocity.

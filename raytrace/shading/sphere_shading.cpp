@@ -17,12 +17,52 @@ namespace granrad {
 
 namespace {
 
-/// A sphere near another, in diameters of the pair's mean from its centre.
-struct Neighbour {
-  Vec3 place;
-  double distance, radius2;
-  std::int32_t number;
+/// Spheres near another, sorted by distance; in diameters of that sphere, from its centre.
+struct Neighbours {
+  std::vector<Vec3> place;
+  std::vector<double> distance;
+  std::vector<std::int32_t> number;
+  std::vector<float> x, y, z, distance2, radius2;  ///< for the search along a pair
+
+  std::size_t size() const { return number.size(); }
 };
+
+/// Those of neighbours [begin, begin + count) that may block lines along a unit axis: `along` it and `rho2`, the square
+/// of the distance from it.
+struct Stretch {
+  static constexpr std::size_t longest = 32;
+  float along[longest], rho2[longest];
+
+  void measure(const Neighbours& near, std::size_t begin, std::size_t count, float ax, float ay, float az) {
+    const float *x = &near.x[begin], *y = &near.y[begin], *z = &near.z[begin], *d2 = &near.distance2[begin];
+    for (std::size_t k = 0; k < count; ++k) {
+      along[k] = x[k] * ax + y[k] * ay + z[k] * az;
+      rho2[k] = d2[k] - along[k] * along[k];
+    }
+  }
+};
+
+/// How far pairs are followed, in diameters: as far as more than `negligible` of what a sphere sends gets, by Beer's
+/// law at the solid fraction of the spheres' bounding box; not so far that more than `most_neighbours` are met.
+double reach_of(const Enclosure& enclosure) {
+  constexpr double least = 6, negligible = 5e-4, most_neighbours = 20000;
+  Box box{enclosure.centre_m[0], enclosure.centre_m[0]};
+  double solid = 0, largest = 0;
+  for (std::size_t i = 0; i < enclosure.sphere_count(); ++i) {
+    const double r = enclosure.radius_m[i];
+    for (int k = 0; k < 3; ++k) {
+      box.min[k] = std::min(box.min[k], enclosure.centre_m[i][k] - r);
+      box.max[k] = std::max(box.max[k], enclosure.centre_m[i][k] + r);
+    }
+    solid += sphere_volume(r);
+    largest = std::max(largest, r);
+  }
+  const double phi = std::min(0.74, solid / box.volume());
+  const double extinction = 1.5 * phi / (1 - phi), across = norm(box.size()) / (2 * largest);
+  const double far = 1 - std::log(negligible) / extinction;
+  const bool few = static_cast<double>(enclosure.sphere_count()) <= most_neighbours;
+  return std::max(least, std::min({far, across, few ? across : std::cbrt(most_neighbours / (8 * phi))}));
+}
 
 /// Walls that hide parts of an enclosure from each other.
 class WallShadows {
@@ -44,7 +84,7 @@ class WallShadows {
 
   /// Share of some lines of the pair that no wall crosses.
   double open_share(const BeamLines::Set& lines, const Vec3& centre_m, double diameter_m,
-                    const Vec3 (&axes)[3]) const {
+                    const Vec3 (&axes)[3], double distance) const {
     if (!tracer_) return 1;
     constexpr std::size_t every = 16;
     int open = 0, tried = 0;
@@ -52,7 +92,8 @@ class WallShadows {
       const auto turned = [&](float x, float y, float z) { return x * axes[0] + y * axes[1] + z * axes[2]; };
       const Vec3 point = centre_m + diameter_m * turned(lines.point_x[k], lines.point_y[k], lines.point_z[k]);
       const Vec3 along = turned(lines.direction_x[k], lines.direction_y[k], lines.direction_z[k]);
-      open += tracer_->first_hit(point, normalized(along), -1).distance_m > diameter_m * lines.end[k];
+      open += tracer_->first_hit(point, normalized(along), -1).distance_m >
+              diameter_m * distance * lines.direction_z[k];
     }
     return static_cast<double>(open) / tried;
   }
@@ -68,16 +109,17 @@ class Shading {
       : enclosure_(enclosure),
         shadows_(enclosure, threads),
         largest_m_(2 * *std::max_element(enclosure.radius_m.begin(), enclosure.radius_m.end())),
-        grid_(enclosure.centre_m, numbers(enclosure.sphere_count()), (BeamLines::longest + 0.1) * largest_m_,
+        reach_(reach_of(enclosure)),
+        grid_(enclosure.centre_m, numbers(enclosure.sphere_count()), (reach_ + 0.1) * largest_m_,
               enclosure.box, enclosure.periodic) {}
 
   /// Pairs of sphere i with those after it.
   void pairs_of(std::int32_t i, std::vector<VisiblePair>& found) const {
-    const auto near = neighbours(i);
-    for (const Neighbour& other : near) {
-      if (other.number < i || other.distance > BeamLines::longest) continue;
-      const double open = open_share(i, other, near);
-      if (open > 0) found.push_back({i, other.number, other.distance * diameter_m(i), open});
+    const Neighbours near = neighbours(i);
+    for (std::size_t k = 0; k < near.size() && near.distance[k] <= reach_; ++k) {
+      if (near.number[k] < i) continue;
+      const double open = open_share(i, k, near);
+      if (open > 0) found.push_back({i, near.number[k], near.distance[k] * diameter_m(i), open});
     }
     std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.j < b.j; });
   }
@@ -90,40 +132,67 @@ class Shading {
   }
   double diameter_m(std::int32_t i) const { return 2 * enclosure_.radius_m[i]; }
 
-  /// Sorted by distance.
-  std::vector<Neighbour> neighbours(std::int32_t i) const {
-    std::vector<Neighbour> near;
+  Neighbours neighbours(std::int32_t i) const {
+    struct Found {
+      double distance;
+      std::int32_t number;
+      Vec3 place;
+    };
+    std::vector<Found> found;
     const double unit = 1 / diameter_m(i);
     grid_.visit_around(enclosure_.centre_m[i], [&](std::int32_t k, const Vec3& p) {
       if (k == i) return;
       const Vec3 place = (p - enclosure_.centre_m[i]) * unit;
-      const double distance = norm(place), r = enclosure_.radius_m[k] * unit;
-      if (distance <= BeamLines::longest + 0.1) near.push_back({place, distance, r * r, k});
+      if (const double distance = norm(place); distance <= reach_ + 0.1)
+        found.push_back({distance, k, place});
     });
-    std::sort(near.begin(), near.end(), [](const auto& a, const auto& b) {
+    std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
       return a.distance != b.distance ? a.distance < b.distance : a.number < b.number;
     });
+    Neighbours near;
+    for (const Found& f : found) {
+      const double r = enclosure_.radius_m[f.number] * unit;
+      near.place.push_back(f.place);
+      near.distance.push_back(f.distance);
+      near.number.push_back(f.number);
+      near.x.push_back(static_cast<float>(f.place.x));
+      near.y.push_back(static_cast<float>(f.place.y));
+      near.z.push_back(static_cast<float>(f.place.z));
+      near.distance2.push_back(static_cast<float>(f.distance * f.distance));
+      near.radius2.push_back(static_cast<float>(r * r));
+    }
     return near;
   }
 
-  double open_share(std::int32_t i, const Neighbour& other, const std::vector<Neighbour>& near) const {
-    const double s = std::max(1.0, other.distance), reach2 = s * s + 1;
-    const Vec3 axis = other.place * (1 / other.distance);
+  /// Of sphere i and neighbour `other`.
+  double open_share(std::int32_t i, std::size_t other, const Neighbours& near) const {
+    constexpr float widest = 1.02f;  // radii differ by up to 1 %
+    const double s = std::max(1.0, near.distance[other]);
+    const Vec3 axis = near.place[other] * (1 / near.distance[other]);
     const Vec3 helper = std::abs(axis.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
     const Vec3 u = normalized(cross(axis, helper)), v = cross(axis, u);
-    const Vec3 axes[3] = {u, v, axis};
     const auto& lines = beams().at(s);
+    const float ax = static_cast<float>(axis.x), ay = static_cast<float>(axis.y),
+                az = static_cast<float>(axis.z), length = static_cast<float>(s);
+    const auto end = static_cast<std::size_t>(
+        std::upper_bound(near.distance.begin(), near.distance.end(), std::sqrt(s * s + 1)) -
+        near.distance.begin());
     BlockedLines blocked;
-    for (const Neighbour& k : near) {
-      if (k.distance * k.distance > reach2) break;
-      const double z = dot(k.place, axis), rho2 = k.distance * k.distance - z * z;
-      if (k.number == other.number || z <= -0.5 || z >= s + 0.5 || rho2 >= 1.02) continue;
-      blocked.add(lines, static_cast<float>(dot(k.place, u)), static_cast<float>(dot(k.place, v)),
-                  static_cast<float>(z), static_cast<float>(k.radius2));
-      if (rho2 < 0.04 && blocked.open_share() == 0) return 0;
+    Stretch stretch;
+    for (std::size_t begin = 0; begin < end; begin += Stretch::longest) {
+      const std::size_t count = std::min(Stretch::longest, end - begin);
+      stretch.measure(near, begin, count, ax, ay, az);
+      for (std::size_t k = 0; k < count; ++k) {
+        const float z = stretch.along[k];
+        if (stretch.rho2[k] >= widest || z <= -0.5f || z >= length + 0.5f || begin + k == other) continue;
+        const Vec3& place = near.place[begin + k];
+        blocked.add(lines, length, static_cast<float>(dot(place, u)), static_cast<float>(dot(place, v)), z,
+                    near.radius2[begin + k]);
+        if (blocked.all()) return 0;
+      }
     }
-    const double open = blocked.open_share();
-    return open > 0 ? open * shadows_.open_share(lines, enclosure_.centre_m[i], diameter_m(i), axes) : 0;
+    return blocked.open_share() *
+           shadows_.open_share(lines, enclosure_.centre_m[i], diameter_m(i), {u, v, axis}, s);
   }
 
   static const BeamLines& beams() {
@@ -133,7 +202,7 @@ class Shading {
 
   const Enclosure& enclosure_;
   WallShadows shadows_;
-  double largest_m_;
+  double largest_m_, reach_;
   CellGrid grid_;
 };
 
