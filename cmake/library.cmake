@@ -27,7 +27,7 @@ foreach(room ${granrad_static_rooms})
 endforeach()
 add_library(granrad SHARED ${granrad_objects})
 add_library(granrad::granrad ALIAS granrad)
-target_link_libraries(granrad PRIVATE granrad_flags fmt::fmt hdf5::hdf5 ${UDUNITS2_LIBRARY} PNG::PNG pugixml::pugixml ZLIB::ZLIB embree Eigen3::Eigen Ceres::ceres
+target_link_libraries(granrad PRIVATE granrad_flags fmt::fmt hdf5::hdf5 ${UDUNITS2_LIBRARY} PNG::PNG pugixml::pugixml ZLIB::ZLIB ${ZIP_LIBRARY} embree Eigen3::Eigen Ceres::ceres
   ${MUPARSER_LIBRARY})
 if(GRANRAD_LIGGGHTS)
   target_link_libraries(granrad PRIVATE ${LIGGGHTS_LIBRARY} MPI::MPI_C)

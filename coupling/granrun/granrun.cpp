@@ -106,21 +106,29 @@ void add_new(CLI::App& app, Body& body) {
   starter->callback([&body, file, example] { body = [=] { return new_scene(*file, *example); }; });
 }
 
+int print_keys_of(const std::string& kind, const std::string& format) {
+  if (kind == "study") return print_keys(read_study_keys, "A study of granrad", format);
+  if (kind == "table") return print_keys(read_table_keys, "A correlation table of granrad", format);
+  return print_keys(read_scene_keys, "A scene of granrad", format);
+}
+
 void add_keys(CLI::App& app, Body& body) {
   struct Asked {
     std::string of = "scene";
     bool markdown = false, toml = false, schema = false;
   };
   const auto asked = std::make_shared<Asked>();
-  auto* keys = app.add_subcommand("keys", "every key of a scene: unit, range, default, meaning");
-  keys->add_option("OF", asked->of, "scene, or table (of a correlation)")
-      ->check(CLI::IsMember({"scene", "table"}))
+  auto* keys = app.add_subcommand("keys", "every key of a file: unit, range, default, meaning");
+  keys->add_option("OF", asked->of, "scene, study, or table (of a correlation)")
+      ->check(CLI::IsMember({"scene", "study", "table"}))
       ->capture_default_str();
   auto* markdown = keys->add_flag("--md", asked->markdown, "a page in Markdown (the default)");
   auto* toml = keys->add_flag("--toml", asked->toml, "a commented file to start from")->excludes(markdown);
   keys->add_flag("--schema", asked->schema, "a JSON schema for editors")->excludes(markdown)->excludes(toml);
   keys->callback([&body, asked] {
-    body = [asked] { return print_keys(asked->of, asked->toml ? "toml" : asked->schema ? "schema" : "md"); };
+    body = [asked] {
+      return print_keys_of(asked->of, asked->toml ? "toml" : asked->schema ? "schema" : "md");
+    };
   });
 }
 
@@ -209,9 +217,9 @@ void add_report(CLI::App& app, Arguments& a, Body& body) {
 void add_export(CLI::App& app, Arguments& a, Body& body) {
   auto* exporter = app.add_subcommand("export", "frames for OVITO and other tools, into DIR/export");
   exporter->add_option("DIR", a.folder, "folder of a case")->required();
-  exporter->add_option("--to", a.format, "vtp, dump or csv")
+  exporter->add_option("--to", a.format, "vtp, dump, csv or npz (numpy)")
       ->required()
-      ->check(CLI::IsMember({"vtp", "dump", "csv"}));
+      ->check(CLI::IsMember({"vtp", "dump", "csv", "npz"}));
   add_common(exporter, a);
   exporter->callback([&] { body = [&] { return export_case(a.folder, a.format, a.options); }; });
 }

@@ -9,8 +9,6 @@
 
 namespace granrad {
 
-namespace {
-
 void read_scene_keys(TomlDocument& document) {
   const Scene flow = read_scene(document);
   read_heat_scene(document, flow);
@@ -20,11 +18,8 @@ void read_table_keys(TomlDocument& document) {
   read_correlation(document, "table");
 }
 
-}  // namespace
-
-int print_keys(const std::string& of, const std::string& format) {
-  const auto tables = key_catalogue(of == "table" ? read_table_keys : read_scene_keys);
-  const std::string title = of == "table" ? "A correlation table of granrad" : "A scene of granrad";
+int print_keys(const KeyReader& read, const std::string& title, const std::string& format) {
+  const auto tables = key_catalogue(read);
   fmt::print("{}", format == "schema" ? reference_schema(tables, title)
                    : format == "toml" ? reference_toml(tables, title)
                                       : reference_markdown(tables));

@@ -37,6 +37,10 @@ void check_folder(const fs::path& folder) {
 
 }  // namespace
 
+void read_study_keys(TomlDocument& document) {
+  read_study(document, "study.toml");
+}
+
 int run_study(const fs::path& file, const fs::path& folder, const StudyOptions& options,
               const std::string& table_name) {
   const Study study = read_study(file, options.quick);

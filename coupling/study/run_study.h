@@ -8,4 +8,7 @@ namespace granrad {
 int run_study(const std::filesystem::path& file, const std::filesystem::path& folder,
               const StudyOptions& options, const std::string& table_name = "study.csv");
 
+/// Reads every key of a study: for the catalogue of keys.
+void read_study_keys(TomlDocument& document);
+
 }  // namespace granrad

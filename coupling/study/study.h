@@ -6,6 +6,8 @@
 
 namespace granrad {
 
+class TomlDocument;
+
 /// What a case does. All but `command` are commands of our two programs.
 enum class StudyKind { run, validate, measure, trace, fit, command };
 const char* to_string(StudyKind kind);
@@ -78,5 +80,7 @@ struct Study {
 /// `quick`: cases that are not marked quick = true (a [[vary]] names its quick steps) are skipped, the others get
 /// their quick_set last.
 Study read_study(const std::filesystem::path& file, bool quick = false);
+/// The same of a document; `file` is its name.
+Study read_study(TomlDocument& document, const std::filesystem::path& file, bool quick = false);
 
 }  // namespace granrad

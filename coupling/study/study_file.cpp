@@ -5,6 +5,7 @@
 #include <set>
 
 #include "coupling/study/study.h"
+#include "coupling/study/study_outputs.h"
 #include "dem/base/error.h"
 #include "dem/base/toml/toml_reader.h"
 
@@ -40,16 +41,40 @@ struct Step {
   bool quick = true;
 };
 
-std::vector<Step> read_rows(TomlTable& table) {
-  const auto rows = table.string_lists("set", 1);
-  const auto names = table.string_list("names", rows.size());
-  if (!names.empty() && names.size() != rows.size())
-    table.problem("names", fmt::format("has {} names for {} rows of set", names.size(), rows.size()));
-  const std::string column = table.string("name", "row");
+/// [[vary]] as it stands in the file.
+struct Vary {
+  std::vector<std::string> keys, texts, values, names;
+  std::vector<std::vector<std::string>> set;
+  std::string name;
+};
+
+Vary read_vary(TomlTable& table) {
+  Vary vary;
+  const auto key = table.string(
+      {"key", "key of the scene that takes each of the values", "required without keys and set"}, "");
+  vary.keys = table.string_list({"keys", "keys that take the same value, in place of key"});
+  if (!key.empty()) vary.keys.push_back(key);
+  vary.values = table.value_list({"values", "what the key takes, one after the other"});
+  vary.texts = table.string_list({"texts", "the same as they would stand behind --set KEY="});
+  vary.set = table.string_lists({"set", "in place of key and values: rows of KEY=VALUE, set together"});
+  vary.names = table.string_list({"names", "of the rows of set: a column, and part of the names of cases"});
+  vary.name = table.string(
+      {"name", "heads the column; stands before the value in names of cases", "last part of the key; row"},
+      "");
+  return vary;
+}
+
+std::vector<Step> rows_of(TomlTable& table, const Vary& vary) {
+  if (vary.names.size() != vary.set.size())
+    table.problem("names",
+                  fmt::format("has {} names for {} rows of set", vary.names.size(), vary.set.size()));
+  for (const char* other : {"key", "keys", "values", "texts"})
+    if (table.has(other)) table.problem(other, "stands beside set; use one or the other");
+  const std::string column = vary.name.empty() ? "row" : vary.name;
   std::vector<Step> steps;
-  for (std::size_t k = 0; k < std::min(rows.size(), names.size()); ++k) {
-    Step step{folder_name(names[k]), rows[k], {{column, names[k]}}};
-    for (const auto& text : rows[k])
+  for (std::size_t k = 0; k < std::min(vary.set.size(), vary.names.size()); ++k) {
+    Step step{folder_name(vary.names[k]), vary.set[k], {{column, vary.names[k]}}};
+    for (const auto& text : vary.set[k])
       if (const auto equals = text.find('='); equals != std::string::npos)
         step.varied.emplace_back(text.substr(0, equals), text.substr(equals + 1));
     steps.push_back(step);
@@ -58,31 +83,31 @@ std::vector<Step> read_rows(TomlTable& table) {
 }
 
 std::vector<Step> read_steps(TomlTable& table) {
-  if (table.has("set")) return read_rows(table);
-  std::vector<std::string> keys;
-  if (table.has("keys")) keys = table.string_list("keys", 1);
-  if (keys.empty() || table.has("key")) keys.push_back(table.string("key"));
-  std::vector<std::string> values;
-  if (table.has("texts")) values = table.string_list("texts", 1);
-  if (!table.has("texts") || table.has("values"))
-    for (const auto& value : table.value_list("values", 1)) values.push_back(value);
-  const std::string name = table.string("name", last_part(keys.front()));
+  const Vary vary = read_vary(table);
+  if (!vary.set.empty()) return rows_of(table, vary);
+  if (vary.keys.empty())
+    table.problem("key", "missing: name the key of the scene that varies, or rows by set");
+  if (vary.values.empty() && vary.texts.empty()) table.problem("values", "missing: list what the key takes");
+  if (vary.keys.empty()) return {};
+  const std::string name = vary.name.empty() ? last_part(vary.keys.front()) : vary.name;
   std::vector<Step> steps;
-  for (const auto& value : values) {
-    Step step{folder_name(name + "-" + value), {}, {}};
-    for (const auto& key : keys) {
-      step.set.push_back(key + "=" + value);
-      step.varied.emplace_back(key, value);
+  for (const auto* list : {&vary.texts, &vary.values})
+    for (const auto& value : *list) {
+      Step step{folder_name(name + "-" + value), {}, {}};
+      for (const auto& key : vary.keys) {
+        step.set.push_back(key + "=" + value);
+        step.varied.emplace_back(key, value);
+      }
+      steps.push_back(step);
     }
-    steps.push_back(step);
-  }
   return steps;
 }
 
 std::vector<Step> read_marked_steps(TomlTable& table) {
   auto steps = read_steps(table);
+  const auto quick =
+      table.string_list({"quick", "the steps a quick run takes, by the names of their cases", "all"});
   if (!table.has("quick")) return steps;
-  const auto quick = table.string_list("quick");
   for (const auto& name : quick)
     if (std::none_of(steps.begin(), steps.end(), [&](const Step& s) { return s.name == name; }))
       table.problem("quick", fmt::format("names {}, which is none of its steps", name));
@@ -97,15 +122,31 @@ StudyKind kind_of(const std::string& name) {
 /// Keys that a group and a single case share; what the case lacks is the group's.
 StudyCase read_base(TomlTable& table, const StudyCase& outer) {
   StudyCase base = outer;
-  base.kind = kind_of(table.choice("kind", kinds, to_string(outer.kind)));
-  if (table.has("scene")) base.scene = table.file("scene", true);
-  for (const auto& text : table.string_list("set")) base.set.push_back(text);
-  for (const auto& key : table.string_list("unset")) base.unset.push_back(key);
-  if (table.has("from")) base.from = table.string_list("from", 1);
-  if (table.has("options")) base.options = table.string_list("options");
-  base.start = table.string("start", outer.start);
-  base.quick = table.boolean("quick", outer.quick);
-  for (const auto& text : table.string_list("quick_set")) base.quick_set.push_back(text);
+  base.kind = kind_of(table.choice(
+      {"kind",
+       "run, validate, measure (conductivity), trace (frames of runs), fit (traces); command: options are a "
+       "program with its words, {folder} is the folder of the case",
+       "of the group; run"},
+      kinds, to_string(outer.kind)));
+  if (const auto scene = table.file({"scene", "scene every case starts from", "of the group"}, false);
+      table.has("scene"))
+    base.scene = scene;
+  for (const auto& text : table.string_list({"set", "settings KEY=VALUE, as --set of granrun run"}))
+    base.set.push_back(text);
+  for (const auto& key : table.string_list({"unset", "keys taken out of the scene before"}))
+    base.unset.push_back(key);
+  const auto from =
+      table.string_list({"from", "cases a trace takes its frames from, a fit its traces", "of the group"});
+  if (table.has("from")) base.from = from;
+  const auto options = table.string_list({"options", "further words of the command", "of the group"});
+  if (table.has("options")) base.options = options;
+  base.start = table.string({"start", "of a run: begins with the last frame of this case", "of the group"},
+                            outer.start);
+  base.quick = table.boolean({"quick", "part of a quick run (granrun study --quick)", "of the group; false"},
+                             outer.quick);
+  for (const auto& text :
+       table.string_list({"quick_set", "further settings KEY=VALUE of a quick run, made last"}))
+    base.quick_set.push_back(text);
   return base;
 }
 
@@ -125,10 +166,10 @@ void add_case(std::vector<StudyCase>& cases, StudyCase one, const std::string& n
 
 /// `table` holds the seeds of the group, `lists` its [[vary]] and [[case]].
 void read_group(TomlTable table, TomlTable lists, const StudyCase& base, std::vector<StudyCase>& cases) {
-  const auto seeds = table.has("seeds") ? table.value_list("seeds", 1) : std::vector<std::string>{};
-  const auto seed_key = table.string("seed_key", "feed.seed");
+  const auto seeds = table.value_list({"seeds", "replicates of every case, averaged"});
+  const auto seed_key = table.string({"seed_key", "key of the scene that takes the seeds"}, "feed.seed");
   std::vector<std::pair<std::string, StudyCase>> points;
-  for (auto& vary : lists.tables("vary")) {
+  for (auto& vary : lists.tables({"vary", "Keys that vary; every combination of all [[vary]] is a case"})) {
     if (points.empty()) points.emplace_back("", base);
     std::vector<std::pair<std::string, StudyCase>> longer;
     const auto steps = read_marked_steps(vary);
@@ -143,41 +184,10 @@ void read_group(TomlTable table, TomlTable lists, const StudyCase& base, std::ve
     points = longer;
   }
   for (const auto& [name, point] : points) add_case(cases, point, name, seeds, seed_key);
-  for (auto& one : lists.tables("case")) {
-    const std::string name = folder_name(one.string("name"));
+  for (auto& one : lists.tables({"case", "A single case beside the combinations"})) {
+    const std::string name = folder_name(one.string({"name", "of the case and its folder"}));
     add_case(cases, read_base(one, base), name, seeds, seed_key);
   }
-}
-
-StudyFigure read_figure(TomlTable table) {
-  StudyFigure figure;
-  figure.title = table.string("title");
-  figure.text = table.string("text", "");
-  figure.x = table.string("x");
-  figure.y = table.string_list("y", 1);
-  figure.x_label = table.string("x_label", figure.x);
-  figure.y_label = table.string("y_label", figure.y.empty() ? "" : figure.y.front());
-  figure.groups = table.string_list("groups");
-  figure.history = table.string_list("history");
-  figure.particles = table.string_list("particles");
-  figure.by = table.string("by", "");
-  figure.log_x = table.boolean("log_x", false);
-  figure.log_y = table.boolean("log_y", false);
-  for (auto& curve : table.tables("curve"))
-    figure.curves.push_back({curve.string("label"), curve.string("formula")});
-  return figure;
-}
-
-StudyFit read_fit(TomlTable table) {
-  StudyFit fit;
-  fit.name = table.string("name");
-  fit.x = table.string("x");
-  fit.y = table.string("y");
-  fit.form = table.choice("form", {"power", "line", "logarithm", "exponential_logarithm"});
-  fit.group = table.string("group", "");
-  fit.x_min = table.number("x_min", {}, 0);
-  fit.x_max = table.number("x_max", {}, 0);
-  return fit;
 }
 
 void check_names(const Study& study, TomlDocument& document) {
@@ -214,25 +224,22 @@ std::vector<const StudyCase*> Study::of_point(const std::string& point) const {
   return found;
 }
 
-Study read_study(const fs::path& file, bool quick) {
-  auto document = TomlDocument::from_file(file);
+Study read_study(TomlDocument& document, const fs::path& file, bool quick) {
   auto root = document.root();
   Study study;
   study.file = fs::absolute(file);
-  auto head = root.has("sweep") ? root.table("sweep") : root.table("study");
-  study.title = head.string("title", file.stem().string());
+  auto head = root.table({"study", "The study, and what all its cases share"});
+  if (root.has("sweep")) head = root.table({"sweep", "The old name of [study]: the same keys"});
+  study.title = head.string({"title", "of the page", "name of the file"}, file.stem().string());
   const StudyCase base = read_base(head, {});
   read_group(head, root, base, study.cases);
-  for (auto& group : root.tables("group")) {
+  for (auto& group :
+       root.tables({"group", "Further cases, with another scene or kind; what it lacks is the study's"})) {
     StudyCase outer = base;
-    outer.group = folder_name(group.string("name"));
+    outer.group = folder_name(group.string({"name", "stands before the names of its cases"}));
     read_group(group, group, read_base(group, outer), study.cases);
   }
-  for (auto& column : root.tables("column"))
-    study.columns.push_back({column.string("name"), column.string("formula")});
-  for (auto& fit : root.tables("fit")) study.fits.push_back(read_fit(fit));
-  for (auto& figure : root.tables("figure")) study.figures.push_back(read_figure(figure));
-  if (auto claims = root.table("claims"); claims.present()) study.claims = claims.file("file", true);
+  read_outputs(root, study);
   for (auto& one : study.cases) {
     one.skipped = quick && !one.quick;
     if (quick) one.set.insert(one.set.end(), one.quick_set.begin(), one.quick_set.end());
@@ -240,6 +247,11 @@ Study read_study(const fs::path& file, bool quick) {
   check_names(study, document);
   document.finish();
   return study;
+}
+
+Study read_study(const fs::path& file, bool quick) {
+  auto document = TomlDocument::from_file(file);
+  return read_study(document, file, quick);
 }
 
 }  // namespace granrad

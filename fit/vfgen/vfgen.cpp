@@ -76,6 +76,20 @@ void add_measure(CLI::App& app, Body& body) {
   });
 }
 
+void add_export(CLI::App& app, Body& body) {
+  const auto command = std::make_shared<ExportCommand>();
+  auto& sub = *app.add_subcommand("export", "Traced view factors for other programs");
+  sub.add_option("FILE", command->file, "HDF5 file of vfgen trace")->required();
+  sub.add_option("--to", command->format,
+                 "csv: a row a pair, with its distance; npz: scipy.sparse.load_npz; mtx: Matrix Market")
+      ->required()
+      ->check(CLI::IsMember({"csv", "npz", "mtx", "aspherix"}).description("csv, npz or mtx"));
+  sub.add_option("-o,--output", command->output, "file; default: beside FILE, named after the format");
+  sub.callback([&body, command] {
+    body = [command](Verbosity verbosity) { return run_export(*command, verbosity); };
+  });
+}
+
 void add_check(CLI::App& app, Body& body) {
   const auto table = std::make_shared<std::filesystem::path>();
   auto& sub = *app.add_subcommand("check", "Bounds, range and closure of a correlation table");
@@ -118,6 +132,7 @@ int run(int argc, char** argv) {
   add_fit(app, body);
   add_generate(app, body);
   add_check(app, body);
+  add_export(app, body);
   add_keys(app, body);
   add_curve(app, body);
   add_measure(app, body);

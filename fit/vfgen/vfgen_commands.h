@@ -50,6 +50,14 @@ struct MeasureCommand {
 };
 int run_measure(const MeasureCommand& command, Verbosity verbosity);
 
+/// vfgen export: a file of vfgen trace for other programs, as "csv" (a row a pair), "npz" (scipy.sparse.load_npz) or "mtx"
+/// (Matrix Market; errors in a second file). Throws InputError for "aspherix".
+struct ExportCommand {
+  std::filesystem::path file, output;  ///< output empty: beside the file, with the ending of the format
+  std::string format;
+};
+int run_export(const ExportCommand& command, Verbosity verbosity);
+
 /// vfgen generate: see fit/generate/generate.h.
 struct GenerateCommand {
   std::filesystem::path config, folder;

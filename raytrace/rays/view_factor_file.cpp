@@ -63,14 +63,7 @@ void write_surfaces(Hdf5Writer& out, const ViewFactorFile& content, const std::v
 }
 
 void write_factors(Hdf5Writer& out, const ExchangeAreas& closed, const std::vector<double>& bound) {
-  std::vector<double> value(closed.value.size()), error(closed.value.size(), 0);
-  for (std::size_t i = 0; i < closed.area_m2.size(); ++i)
-    for (auto k = closed.pattern.row_begin[i]; k < closed.pattern.row_begin[i + 1]; ++k) {
-      const auto at = static_cast<std::size_t>(k);
-      if (!(closed.area_m2[i] > 0)) continue;
-      value[at] = closed.value[at] / closed.area_m2[i];
-      if (!closed.variance.empty()) error[at] = std::sqrt(closed.variance[at]) / closed.area_m2[i];
-    }
+  const auto [value, error] = closed_factors(closed);
   out.write("/view_factors/row_begin", closed.pattern.row_begin);
   write_some(out, "/view_factors/column", closed.pattern.column);
   write_some(out, "/view_factors/value", value);
@@ -315,6 +308,20 @@ ViewFactorFile read_content(const Hdf5Reader& in) {
 }
 
 }  // namespace
+
+ClosedFactors closed_factors(const ExchangeAreas& closed) {
+  ClosedFactors factors{std::vector<double>(closed.value.size(), 0),
+                        std::vector<double>(closed.value.size(), 0)};
+  for (std::size_t i = 0; i < closed.area_m2.size(); ++i)
+    for (auto k = closed.pattern.row_begin[i]; k < closed.pattern.row_begin[i + 1]; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      if (!(closed.area_m2[i] > 0)) continue;
+      factors.value[at] = closed.value[at] / closed.area_m2[i];
+      if (!closed.variance.empty())
+        factors.standard_error[at] = std::sqrt(closed.variance[at]) / closed.area_m2[i];
+    }
+  return factors;
+}
 
 void write_view_factors(const std::filesystem::path& file, const ViewFactorFile& content) {
   std::vector<double> area = surface_areas(content.enclosure);

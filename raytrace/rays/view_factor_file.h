@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "raytrace/enclosure.h"
 #include "raytrace/exchange.h"
@@ -59,6 +60,13 @@ struct ViewFactorFile {
   Closure closure = Closure::reciprocal;
   double closure_correction_max = 0;
 };
+
+/// F_ij = X_ij / A_i and its standard error, on the pattern of `closed`; 0 in rows of surfaces without area, and errors 0
+/// where none was estimated.
+struct ClosedFactors {
+  std::vector<double> value, standard_error;
+};
+ClosedFactors closed_factors(const ExchangeAreas& closed);
 
 /// Writes to a temporary name, fsyncs, renames. Throws IoError.
 void write_view_factors(const std::filesystem::path& file, const ViewFactorFile& content);

@@ -72,7 +72,7 @@ def check_promises(folder):
 
 
 def check_references():
-    for page, command in (("scene.md", ["granrun", "keys"]), ("tables.md", ["granrun", "keys", "table"]), ("generate.md", ["vfgen", "keys"])):
+    for page, command in (("scene.md", ["granrun", "keys"]), ("study_keys.md", ["granrun", "keys", "study"]), ("tables.md", ["granrun", "keys", "table"]), ("generate.md", ["vfgen", "keys"])):
         made = subprocess.run([BIN / command[0], *command[1:]], capture_output=True, text=True, check=True).stdout
         if not (SOURCE / "docs" / page).read_text().endswith(made):
             faults.append(f"docs/{page} is not what {' '.join(command)} says; ./do docs makes it anew")

@@ -85,7 +85,7 @@ const std::map<std::string, std::vector<std::string>> arrows = [] {
   return std::map<std::string, Folders>{
       {"dem/", engine},
       {"dem/base/", {"dem/base/"}},
-      {"dem/base/files/", {"dem/base/error.h", "dem/base/files/"}},
+      {"dem/base/files/", {"dem/base/error.h", "dem/base/vec3.h", "dem/base/files/"}},
       {"dem/base/toml/", base},
       {"dem/page/", join({base, {"dem/page/"}})},
       {"dem/bed/", bed},
@@ -170,6 +170,7 @@ TEST(Layering, ThirdPartyHeadersStayInTheirFile) {
         "raytrace/rays/view_factor_file.cpp"}},
       {"Random123/", {"dem/base/random.cpp"}},
       {"zlib.h", {"dem/base/files/file_bytes.cpp"}},
+      {"zip.h", {"dem/base/files/npz_file.cpp"}},
       {"pugixml", {"dem/io/import_vtk_xml.cpp"}},
       {"liggghts/", {"dem/liggghts/session.cpp"}},
       {"mpi.h", {"dem/liggghts/session.cpp"}},

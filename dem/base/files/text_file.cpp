@@ -1,5 +1,6 @@
 #include "dem/base/files/text_file.h"
 
+#include <fcntl.h>
 #include <fmt/core.h>
 #include <unistd.h>
 
@@ -8,6 +9,7 @@
 #include <cstring>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 
 #include "dem/base/error.h"
 
@@ -19,17 +21,26 @@ void write_text_file(const std::filesystem::path& file, const std::string& text)
   const auto temporary = file.string() + fmt::format(".tmp{}", getpid());
   std::FILE* stream = std::fopen(temporary.c_str(), "w");
   if (!stream) throw IoError(fmt::format("{}: cannot write ({})", file.string(), std::strerror(errno)));
-  const bool written = std::fwrite(text.data(), 1, text.size(), stream) == text.size() &&
-                       std::fflush(stream) == 0 && fsync(fileno(stream)) == 0;
+  const bool written = std::fwrite(text.data(), 1, text.size(), stream) == text.size();
   const int write_errno = errno;
   const bool closed = std::fclose(stream) == 0;
   if (!written || !closed) {
+    const int why = written ? errno : write_errno;
     std::remove(temporary.c_str());
-    throw IoError(fmt::format("{}: cannot write ({})", file.string(), std::strerror(write_errno)));
+    throw IoError(fmt::format("{}: cannot write ({})", file.string(), std::strerror(why)));
   }
-  std::filesystem::rename(temporary, file, failure);
+  put_in_place(temporary, file);
+}
+
+void put_in_place(const std::filesystem::path& temporary, const std::filesystem::path& file) {
+  std::error_code failure;
+  const int descriptor = ::open(temporary.c_str(), O_RDONLY);
+  if (descriptor < 0 || ::fsync(descriptor) != 0) failure.assign(errno, std::generic_category());
+  if (descriptor >= 0) ::close(descriptor);
+  if (!failure) std::filesystem::rename(temporary, file, failure);
   if (failure) {
-    std::remove(temporary.c_str());
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
     throw IoError(fmt::format("{}: cannot write ({})", file.string(), failure.message()));
   }
 }

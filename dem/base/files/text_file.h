@@ -11,4 +11,7 @@ void write_text_file(const std::filesystem::path& file, const std::string& text)
 /// All of a file. Throws IoError.
 std::string read_text_file(const std::filesystem::path& file);
 
+/// Fsyncs a whole file of a temporary name and gives it its own. Throws IoError; the temporary file is gone then.
+void put_in_place(const std::filesystem::path& temporary, const std::filesystem::path& file);
+
 }  // namespace granrad

@@ -40,6 +40,8 @@ enum class KeyKind {
   vectors,
   numbers,
   texts,
+  text_lists,  ///< lists of texts
+  values,      ///< numbers, texts and booleans
   table,
   tables,
 };

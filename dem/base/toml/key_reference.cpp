@@ -84,6 +84,10 @@ Json value_schema(const KeyUse& use) {
       return {{"type", "array"}, {"items", number_schema(use.rule, "number")}};
     case KeyKind::texts:
       return {{"type", "array"}, {"items", {{"type", "string"}}}};
+    case KeyKind::text_lists:
+      return {{"type", "array"}, {"items", {{"type", "array"}, {"items", {{"type", "string"}}}}}};
+    case KeyKind::values:
+      return {{"type", "array"}, {"items", {{"type", {"number", "string", "boolean"}}}}};
     case KeyKind::table:
     case KeyKind::tables:
       break;
@@ -158,6 +162,10 @@ std::string values_text(const KeyUse& use) {
       return fmt::format("list, each {}", bounded("number"));
     case KeyKind::texts:
       return "list of texts";
+    case KeyKind::text_lists:
+      return "list of lists of texts";
+    case KeyKind::values:
+      return "list of numbers, texts or booleans";
     case KeyKind::table:
     case KeyKind::tables:
       break;

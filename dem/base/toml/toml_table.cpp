@@ -245,7 +245,7 @@ std::vector<std::string> TomlTable::string_list(const Key& key, std::size_t min_
 }
 
 std::vector<std::vector<std::string>> TomlTable::string_lists(const Key& key, std::size_t min_count) {
-  node_->use(key, KeyKind::texts).required = min_count > 0;
+  node_->use(key, KeyKind::text_lists).required = min_count > 0;
   std::vector<std::vector<std::string>> all;
   if (const toml::array* array = node_->list(key.name, min_count, "lists of texts in quotes"))
     for (std::size_t k = 0; k < array->size(); ++k) {
@@ -261,7 +261,7 @@ std::vector<std::vector<std::string>> TomlTable::string_lists(const Key& key, st
 }
 
 std::vector<std::string> TomlTable::value_list(const Key& key, std::size_t min_count) {
-  node_->use(key, KeyKind::texts).required = min_count > 0;
+  node_->use(key, KeyKind::values).required = min_count > 0;
   std::vector<std::string> all;
   if (const toml::array* array = node_->list(key.name, min_count, "numbers, texts or booleans"))
     for (std::size_t k = 0; k < array->size(); ++k) {
