@@ -4,7 +4,8 @@
 
 namespace granrad {
 
-/// A sum that remembers what rounding took (Neumaier): its error does not grow with the number of terms.
+/// A sum that remembers what rounding took (Neumaier, Z. angew. Math. Mech. 54 (1974) 39): its
+/// error does not grow with the number of terms.
 class CompensatedSum {
  public:
   void add(double term);

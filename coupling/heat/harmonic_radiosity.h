@@ -5,7 +5,8 @@
 
 namespace granrad {
 
-/// Net heats of grey surfaces whose radiosity varies over them (see ExchangeMoments): the Galerkin form of
+/// Net heats of grey surfaces whose radiosity varies over them (see ExchangeMoments): the Galerkin form of the
+/// integral equation of grey diffuse enclosures (Modest, Radiative Heat Transfer, ch. 5),
 /// B = eps E + (1 - eps) H,
 ///     M_i b_i / rho_i - sum_j K_ij b_j = eps_i / rho_i E_i m_i,   rho = 1 - eps, m_i = M_i (1, 0, ...),
 /// symmetric positive definite, by conjugate gradients with the blocks M_i / rho_i as preconditioner; black

@@ -18,6 +18,7 @@ double heat_capacity_J_K(const Bed& bed, std::size_t i);
 /// A conduction step may move a particle at most this part of the way to its neighbours: dt sum(G)/(m c).
 inline constexpr double conduction_step_fraction = 0.1;
 
+/// Temperatures follow the energy balance of a particle, m c dT/dt = Q_cond + Q_rad (the paper's Eq. (Ebalance)).
 /// Largest conduction step, s: 0.1 min_i m_i c_i / sum_j G_ij; infinite when nothing conducts.
 double conduction_step_limit_s(const Bed& bed, const Conductances& conductances);
 

@@ -8,7 +8,8 @@
 
 namespace granrad {
 
-/// Exchange source by view factors and one radiosity per surface: estimate -> close -> solve.
+/// Exchange source by view factors and one radiosity per surface: estimate -> close -> solve (the paper's Eqs.
+/// (radiosity) and (Qrad); net-radiation method, Modest, Radiative Heat Transfer, ch. 5).
 /// A wall of emissivity 0 (adiabatic) re-radiates with one radiosity, excluded walls are dropped before
 /// closure. Implicit emission of particles is exact here: an emissivity f eps. While the enclosure does not change (a frozen bed) the exchange areas are estimated once. Their
 /// random numbers are chosen by the geometry and not by the update, so that a resumed run finds the same

@@ -12,7 +12,8 @@ struct MoveLength {
   Vec3 shortest, longest;
 };
 
-/// Metropolis moves of hard spheres: each sweep offers every sphere one random displacement, taken when it
+/// Metropolis moves (J. Chem. Phys. 21 (1953) 1087) of hard spheres: each sweep
+/// offers every sphere one random displacement, taken when it
 /// neither overlaps another sphere nor a wall. Detailed balance holds at a fixed step length, so the
 /// stationary state is the hard-sphere fluid. The length of moves grows from the shortest to the
 /// longest, as long as 40 % are accepted, during the first half of the sweeps only.

@@ -8,7 +8,8 @@
 
 namespace granrad {
 
-/// The exact factor with nothing in between times what gets through the bed, always within [0, exact]:
+/// The exact factor with nothing in between times what gets through the bed, always within [0, exact]; a form of this
+/// project after Beer's law, in place of the paper's cubics (table of its Eqs. for F_pp and F_pw):
 ///   pairs  F = F_exact(d*) exp(-a (d* - 1)^b)
 ///   walls  F = F_exact(centre, wall) t0 exp(-c (h/d - 1/2)^e)
 /// a and c are extinctions: they vanish with the solid fraction, about in proportion.

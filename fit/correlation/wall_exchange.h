@@ -17,7 +17,7 @@ struct WallExchange {
 };
 
 /// Extinction coefficient of a bed of equal spheres, 1/m: 3/2 phi / (d (1 - phi)). Its inverse is the mean
-/// chord between the spheres, 4 V_void / S, exact for any packing; the exponential law about it is exact for
+/// chord between the spheres, 4 V_void / S (Cauchy), exact for any packing; the exponential law about it is exact for
 /// a dilute bed and an approximation for a dense one.
 double extinction_1_m(double solid_fraction, double diameter_m);
 

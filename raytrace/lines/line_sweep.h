@@ -11,7 +11,8 @@ namespace granrad {
 
 /// Global parallel lines: the fast exchange source for spheres of any radii in a convex box or polyhedron.
 ///
-/// Diffuse emission from convex bodies into a convex void is a uniform, isotropic field of lines, and two
+/// Diffuse emission from convex bodies into a convex void is a uniform, isotropic field of lines (Santalo, Integral
+/// Geometry, 1976; global lines: Sbert, Comput. Graph. Forum 12 (1993) C-409), and two
 /// surfaces exchange along every line on which they are neighbours:
 ///     X_ij = A_i F_ij = (2 h^2 / D) S_ij,
 /// S_ij the lines on which i and j follow each other (in either order), h the spacing of a square lattice of

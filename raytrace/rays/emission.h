@@ -11,7 +11,8 @@ struct Emission {
   Vec3 origin_m, direction, normal;
 };
 
-/// Cosine-distributed direction about `normal` from two uniforms in [0, 1): sin^2(theta) = u.
+/// Cosine-distributed direction about `normal` from two uniforms in [0, 1): sin^2(theta) = u (Modest, Radiative Heat
+/// Transfer, chapter on Monte Carlo methods).
 Vec3 cosine_direction(const Vec3& normal, double u, double v);
 
 /// Diffuse emission from every point of a surface alike: four uniforms -> point uniform in area (sphere,

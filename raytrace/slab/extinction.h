@@ -29,7 +29,8 @@ struct Extinction {
 
 /// Rays from points uniform in the void (of the box of the spheres' centres where nothing is periodic) in every
 /// direction, followed to the first sphere. A wall ends a ray unseen (a censored length), so beta = hits / total
-/// length, the maximum likelihood estimate for exponential extinction; its error is the scatter of 16 batches.
+/// length, the maximum likelihood estimate for exponential extinction; the product limit is Kaplan and Meier's (J. Am.
+/// Stat. Assoc. 53 (1958) 457); its error is the scatter of 16 batches.
 /// For opaque spheres placed at random, overlapping, extinction is exponential with beta = n pi r^2 exactly, and the
 /// cosine of diffuse reflection is -4/9 for every convex shape. Throws InputError (no spheres, no void).
 Extinction measure_extinction(const Enclosure& enclosure, const ExtinctionRequest& request);
