@@ -38,20 +38,88 @@ bool is_closed(const Wall& wall) {
   return std::all_of(uses.begin(), uses.end(), [](const auto& edge) { return edge.second == 2; });
 }
 
+double slack_of(const std::vector<Wall>& walls) {
+  Box all = Box::empty();
+  for (const auto& wall : walls)
+    for (const auto& v : wall.vertices) all.include(v);
+  return all.is_empty() ? 0 : same_place * norm(all.size());
+}
+
+std::vector<std::size_t> by_age(std::size_t walls, const std::vector<std::int64_t>& order) {
+  std::vector<std::size_t> sorted(walls);
+  std::iota(sorted.begin(), sorted.end(), std::size_t{0});
+  if (!order.empty())
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [&](std::size_t a, std::size_t b) { return order[a] < order[b]; });
+  return sorted;
+}
+
+/// Lays plates into the plane of an earlier plate they all but lie in. One that faces out of the outermost plane,
+/// where there is nothing to see, is turned: whoever draws a patch on a wall need not think of its winding.
+class Plates {
+ public:
+  Plates(std::vector<Wall>& walls, double slack_m) : walls_(walls), slack_m_(slack_m) {
+    for (const auto& wall : walls_)
+      planes_.push_back(wall.vertices.size() >= 3 ? plane_of(wall) : std::nullopt);
+  }
+
+  std::vector<std::string> lay(const std::vector<std::size_t>& by_age) {
+    std::vector<std::string> notes;
+    for (std::size_t k = 1; k < by_age.size(); ++k)
+      for (std::size_t m = 0; m < k; ++m)
+        if (lies_in(by_age[k], by_age[m])) {
+          if (lay_on(by_age[m], by_age[k]))
+            notes.push_back(fmt::format("wall {} faced out of wall {} on which it lies, and was turned",
+                                        walls_[by_age[k]].name, walls_[by_age[m]].name));
+          break;
+        }
+    return notes;
+  }
+
+ private:
+  bool lies_in(std::size_t later, std::size_t earlier) const {
+    if (!planes_[later] || !planes_[earlier]) return false;
+    if (std::abs(dot(planes_[later]->normal, planes_[earlier]->normal)) < nearly_parallel) return false;
+    const auto& v = walls_[later].vertices;
+    return std::all_of(v.begin(), v.end(),
+                       [&](const Vec3& p) { return std::abs(planes_[earlier]->height(p)) <= slack_m_; });
+  }
+
+  /// Whether all walls stand on the front side of a plane, and not all in it.
+  bool is_outermost(const WallPlane& plane) const {
+    double highest = 0;
+    for (const auto& wall : walls_)
+      for (const auto& p : wall.vertices) {
+        if (plane.height(p) < -slack_m_) return false;
+        highest = std::max(highest, plane.height(p));
+      }
+    return highest > slack_m_;
+  }
+
+  /// Whether the later one was turned.
+  bool lay_on(std::size_t earlier, std::size_t later) {
+    const WallPlane plane = *planes_[earlier];
+    bool turned = false;
+    if (dot(plane.normal, planes_[later]->normal) < 0) {
+      if (!is_outermost(plane)) return false;
+      flip(walls_[later]);
+      turned = true;
+    }
+    for (auto& p : walls_[later].vertices) p -= plane.height(p) * plane.normal;
+    planes_[later] = plane;
+    return turned;
+  }
+
+  std::vector<Wall>& walls_;
+  double slack_m_;
+  std::vector<std::optional<WallPlane>> planes_;
+};
+
 class Cover {
  public:
-  Cover(std::vector<Wall>& walls, const std::vector<std::int64_t>& order) : walls_(walls) {
-    Box all = Box::empty();
-    for (const auto& wall : walls_) {
-      for (const auto& v : wall.vertices) all.include(v);
-      closed_.push_back(is_closed(wall));
-    }
-    slack_m_ = all.is_empty() ? 0 : same_place * norm(all.size());
-    std::vector<std::size_t> by_age(walls_.size());
-    std::iota(by_age.begin(), by_age.end(), std::size_t{0});
-    if (!order.empty())
-      std::stable_sort(by_age.begin(), by_age.end(),
-                       [&](std::size_t a, std::size_t b) { return order[a] < order[b]; });
+  Cover(std::vector<Wall>& walls, const std::vector<std::size_t>& by_age, double slack_m)
+      : walls_(walls), slack_m_(slack_m) {
+    for (const auto& wall : walls_) closed_.push_back(is_closed(wall));
     for (const auto w : by_age)
       if (walls_[w].vertices.size() >= 3)
         for (auto& face : faces_of(walls_[w])) {
@@ -220,7 +288,12 @@ class Cover {
 }  // namespace
 
 WallCover cover_walls(std::vector<Wall>& walls, const std::vector<std::int64_t>& order) {
-  return Cover(walls, order).run();
+  const double slack_m = slack_of(walls);
+  const auto sorted = by_age(walls.size(), order);
+  auto notes = Plates(walls, slack_m).lay(sorted);
+  WallCover cover = Cover(walls, sorted, slack_m).run();
+  cover.notes.insert(cover.notes.begin(), notes.begin(), notes.end());
+  return cover;
 }
 
 }  // namespace granrad

@@ -25,6 +25,9 @@ struct WallCover {
 /// Corners of cut faces that lie on edges of other faces become corners of those too, so that walls which
 /// meet share their edges and act as one plane.
 ///
+/// A plate that all but lies in the plane of an earlier one is moved into it. Where that plane has all walls on its
+/// front side and the plate faces out, it is turned (a note says so): behind it there is nothing to heat.
+///
 /// Places closer than 2e-7 of the extent of all walls are one: the rounding of STL files in single precision.
 /// `order`: which of two walls is later (its line in the scene); none: their order.
 ///
