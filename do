@@ -12,8 +12,8 @@ packages=(build-essential cmake ninja-build git python3
   libcli11-dev libtomlplusplus-dev libfmt-dev nlohmann-json3-dev
   libpng-dev libudunits2-dev librandom123-dev libboost-math-dev libmuparser-dev zlib1g-dev libzip-dev libpugixml-dev)
 
-# The engine on LIGGGHTS: optional in a build, part of the tests.
-liggghts_engine=(libliggghts-dev libopenmpi-dev)
+# Several processes on one case, and the engine on LIGGGHTS: optional in a build, part of the tests.
+liggghts_engine=(libliggghts-dev libopenmpi-dev openmpi-bin)
 
 # What tests look into HDF5 files with.
 test_tools=(hdf5-tools)

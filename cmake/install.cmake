@@ -1,5 +1,10 @@
 # What `cmake --install` puts where, the exported package, and the .deb.
 install(TARGETS granrun vfgen RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+foreach(plugin granrad_mpi granrad_liggghts_plugin)
+  if(TARGET ${plugin})
+    install(TARGETS ${plugin} LIBRARY DESTINATION lib/granrad)
+  endif()
+endforeach()
 install(DIRECTORY data/ DESTINATION ${CMAKE_INSTALL_DATADIR}/granrad
   PATTERN "reference" EXCLUDE)
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -1,6 +1,6 @@
 # libgranrad: every room in one shared library, for programs of others and for Python. The rooms themselves are static
 # libraries, which our programs link.
-set(granrad_rooms granrad_base granrad_files granrad_toml granrad_page granrad_bed granrad_io granrad_mesh granrad_scene granrad_packing granrad_feed granrad_engine
+set(granrad_rooms granrad_base granrad_ranks granrad_files granrad_toml granrad_page granrad_bed granrad_io granrad_mesh granrad_scene granrad_packing granrad_feed granrad_engine
     granrad_native granrad_liggghts granrad_replay)
 foreach(folder raytrace fit coupling)
   get_property(found DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} PROPERTY BUILDSYSTEM_TARGETS)
@@ -28,10 +28,7 @@ endforeach()
 add_library(granrad SHARED ${granrad_objects})
 add_library(granrad::granrad ALIAS granrad)
 target_link_libraries(granrad PRIVATE granrad_flags fmt::fmt hdf5::hdf5 ${UDUNITS2_LIBRARY} PNG::PNG pugixml::pugixml ZLIB::ZLIB ${ZIP_LIBRARY} embree Eigen3::Eigen Ceres::ceres
-  ${MUPARSER_LIBRARY})
-if(GRANRAD_LIGGGHTS)
-  target_link_libraries(granrad PRIVATE ${LIGGGHTS_LIBRARY} MPI::MPI_C)
-endif()
+  ${MUPARSER_LIBRARY} ${CMAKE_DL_LIBS})
 target_include_directories(granrad INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/granrad>)
 target_link_options(granrad PRIVATE -Wl,--no-undefined)  # a room with a library that is not named here
 target_compile_features(granrad INTERFACE cxx_std_20)

@@ -17,6 +17,7 @@
 #include "coupling/validate/validate.h"
 #include "dem/base/error.h"
 #include "dem/base/program.h"
+#include "dem/ranks/ranks.h"
 
 namespace {
 
@@ -239,12 +240,14 @@ int granrun(int argc, char** argv) {
     add(app, a, body);
   add_new(app, body);
   add_keys(app, body);
+  join_ranks();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? exit_ok : exit_bad_input;
   }
-  refuse_several_ranks();
+  if (const auto name = app.get_subcommands().front()->get_name(); name != "run" && name != "check")
+    refuse_several_ranks("granrun " + name);
   apply(a, argc, argv);
   const int code = body();
   if (a.verbose) fmt::print(stderr, "granrun: {}\n", resources_used());
@@ -254,5 +257,5 @@ int granrun(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return run_program("granrun", [&] { return granrun(argc, argv); });
+  return leave_ranks(run_program("granrun", [&] { return granrun(argc, argv); }));
 }

@@ -16,6 +16,7 @@
 #include "dem/base/files/text_file.h"
 #include "dem/base/program.h"
 #include "dem/io/export_text.h"
+#include "dem/ranks/ranks.h"
 
 namespace granrad {
 
@@ -92,15 +93,19 @@ std::string progress_detail(const Simulation& simulation, const HistoryRow& row)
 }
 
 void save(const Simulation& simulation, const CaseFolder& folder) {
-  simulation.write_checkpoint(folder.frame(simulation.bed().step));
-  folder.add_to_series(simulation.bed().step, simulation.bed().time_s);
+  on_first_rank([&] {
+    simulation.write_checkpoint(folder.frame(simulation.bed().step));
+    folder.add_to_series(simulation.bed().step, simulation.bed().time_s);
+  });
 }
 
-/// 0 to go on, else the exit code to stop with.
+/// 0 to go on, else the exit code to stop with, the same on every rank.
 int stop_requested(const RunOptions& options, Clock::time_point start) {
-  if (interrupt_signal()) return 128 + interrupt_signal();
   const double elapsed = std::chrono::duration<double>(Clock::now() - start).count();
-  return elapsed >= options.walltime_s ? exit_wall_time : 0;
+  const int own = interrupt_signal()              ? 128 + interrupt_signal()
+                  : elapsed >= options.walltime_s ? exit_wall_time
+                                                  : 0;
+  return static_cast<int>(largest_over_ranks(own));
 }
 
 /// One tick. What stops it names the way on: the frames before it are whole.
@@ -119,9 +124,13 @@ void advance(Simulation& simulation) {
 /// The time loop, from where the simulation stands to its end or until it must stop.
 int follow(Simulation& simulation, const Case& c, const CaseFolder& folder, const RunOptions& options,
            Clock::time_point start) {
-  HistoryWriter history(folder.history(), simulation.last_row_s());
-  WallHistoryWriter walls(folder.wall_history(), simulation.last_row_s());
-  if (!history.note().empty()) fmt::print(stderr, "note: {}\n", history.note());
+  std::optional<HistoryWriter> history;
+  std::optional<WallHistoryWriter> walls;
+  on_first_rank([&] {
+    history.emplace(folder.history(), simulation.last_row_s());
+    walls.emplace(folder.wall_history(), simulation.last_row_s());
+    if (!history->note().empty()) fmt::print(stderr, "note: {}\n", history->note());
+  });
   if (simulation.bed().step == 0) save(simulation, folder);
   const auto& plan = simulation.plan();
   Progress progress(c.flow.name, plan.time_s(plan.end_tick), options.quiet());
@@ -131,14 +140,18 @@ int follow(Simulation& simulation, const Case& c, const CaseFolder& folder, cons
     advance(simulation);
     if (plan.row_at(simulation.tick())) {
       const Record record = simulation.record();
-      history.append(row = record.row);
-      walls.append(record.walls);
+      row = record.row;
+      on_first_rank([&] {
+        history->append(row);
+        walls->append(record.walls);
+      });
       if (options.verbose())
         fmt::print(stderr, "{}  threads {} of {}\n", progress_detail(simulation, row),
                    simulation.flow_threads().used, simulation.flow_threads().most);
     }
     const int stop = stop_requested(options, start);
-    if (stop || take_checkpoint_request() || plan.frame_at(simulation.tick())) save(simulation, folder);
+    const bool asked = largest_over_ranks(take_checkpoint_request()) != 0;
+    if (stop || asked || plan.frame_at(simulation.tick())) save(simulation, folder);
     progress.update(simulation.bed().time_s, progress_detail(simulation, row));
     if (stop && !simulation.finished()) {
       say(options,
@@ -172,7 +185,9 @@ int run_case(const Case& c, const std::filesystem::path& where, const RunOptions
   install_signal_handlers();
   CaseFolder::check(where, c, options.resume);
   std::optional<CaseLock> lock;
-  if (std::filesystem::exists(where)) lock.emplace(where);
+  on_first_rank([&] {
+    if (std::filesystem::exists(where)) lock.emplace(where);
+  });
   if (options.resume && is_done(where, c)) {
     say(options, fmt::format("{}: finished already, nothing was changed; a later scene.end_time_s goes on",
                              where.string()));
@@ -180,19 +195,21 @@ int run_case(const Case& c, const std::filesystem::path& where, const RunOptions
   }
   Simulation simulation(c, options.threads);
   begin(simulation, c, where, options);
-  if (!lock) lock.emplace(where);
-  const CaseFolder folder = CaseFolder::prepare(where, c, options.resume);
-  write_run_record(folder, c, simulation, options);
-  write_text_file(folder.root() / "walls.vtp", walls_vtp_text(simulation.bed()));
-  if (const int stop = follow(simulation, c, folder, options, start)) {
-    write_run_record(folder, c, simulation, options);
-    return stop;
-  }
-  const Results results = summarise(folder, c);
-  write_results(folder, c, results);
-  write_run_record(folder, c, simulation, options, &results);
-  if (!options.quiet()) print_results(c, results, simulation, folder);
-  return exit_ok;
+  on_first_rank([&] {
+    if (!lock) lock.emplace(where);
+    write_run_record(CaseFolder::prepare(where, c, options.resume), c, simulation, options);
+    write_text_file(where / "walls.vtp", walls_vtp_text(simulation.bed()));
+  });
+  const CaseFolder folder = CaseFolder::named(where);
+  const int stop = follow(simulation, c, folder, options, start);
+  on_first_rank([&] {
+    if (stop) return write_run_record(folder, c, simulation, options);
+    const Results results = summarise(folder, c);
+    write_results(folder, c, results);
+    write_run_record(folder, c, simulation, options, &results);
+    if (!options.quiet()) print_results(c, results, simulation, folder);
+  });
+  return stop;
 }
 
 }  // namespace granrad

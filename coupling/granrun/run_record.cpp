@@ -14,6 +14,7 @@
 #include "dem/base/error.h"
 #include "dem/base/files/text_file.h"
 #include "dem/base/program.h"
+#include "dem/ranks/ranks.h"
 
 namespace granrad {
 
@@ -68,6 +69,7 @@ nlohmann::ordered_json process(const RunOptions& options, const nlohmann::json& 
   json["host"] = host_name();
   json["pid"] = getpid();
   json["threads"] = options.threads > 0 ? options.threads : omp_get_max_threads();
+  if (rank_count() > 1) json["ranks"] = rank_count();
   json["command_line"] = options.command_line;
   json["first_started"] = earlier.is_object() ? earlier.value("first_started", started) : started;
   json["started"] = started;

@@ -105,9 +105,13 @@ CaseFolder CaseFolder::prepare(const fs::path& folder, const Case& c, bool resum
   remove_temporaries(folder);
   copy_inputs(c.inputs, folder);
   write_text_file(folder / "scene.toml", c.portable_text);
-  CaseFolder prepared;
-  prepared.root_ = folder;
-  return prepared;
+  return named(folder);
+}
+
+CaseFolder CaseFolder::named(const fs::path& folder) {
+  CaseFolder named;
+  named.root_ = folder;
+  return named;
 }
 
 fs::path CaseFolder::frame(std::int64_t step) const {

@@ -31,6 +31,8 @@ class CaseFolder {
   static CaseFolder prepare(const std::filesystem::path& folder, const Case& c, bool resume);
   /// A case that is there already. Throws InputError when it is not ours.
   explicit CaseFolder(const std::filesystem::path& folder);
+  /// A folder as it is or will be, unchecked: for ranks that do not write there.
+  static CaseFolder named(const std::filesystem::path& folder);
   /// Whether the folder holds a case that got as far as its record.
   static bool holds_case(const std::filesystem::path& folder);
 

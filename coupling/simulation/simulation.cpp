@@ -11,6 +11,7 @@
 #include "coupling/simulation/radiation_source.h"
 #include "dem/base/error.h"
 #include "dem/io/saved_state.h"
+#include "dem/ranks/ranks.h"
 
 namespace granrad {
 
@@ -45,6 +46,14 @@ class ThreadsOfFlow {
 
 std::int64_t identity(const Case& c) {
   return static_cast<std::int64_t>(text_hash(c.identity));
+}
+
+/// Ranks that trace a part of the rays each must see the same bed.
+void require_same_bed_on_ranks(const Bed& bed) {
+  if (rank_count() == 1) return;
+  std::string bytes(reinterpret_cast<const char*>(bed.position_m.data()), bed.size() * sizeof(Vec3));
+  bytes.append(reinterpret_cast<const char*>(bed.temperature_K.data()), bed.size() * sizeof(double));
+  require_same_on_ranks(text_hash(bytes), fmt::format("the bed at {:g} s", bed.time_s));
 }
 
 /// Particles that take no part in the heat; a plug has some above and below its region by design.
@@ -114,6 +123,7 @@ void Simulation::advance() {
   }
   if (plan_.radiation_at(tick_)) {
     Stopwatch watch(seconds_.radiation);
+    require_same_bed_on_ranks(bed_);
     heat_.radiate(bed_, static_cast<double>(plan_.ticks_per_radiation) * plan_.tick_s);
   }
   Stopwatch watch(seconds_.conduction);

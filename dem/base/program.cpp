@@ -8,7 +8,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 
 #include "dem/base/error.h"
@@ -96,18 +95,6 @@ std::string resources_used() {
 
 double wall_seconds() {
   return now_s() - started_s;
-}
-
-void refuse_several_ranks() {
-  for (const char* variable : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MPI_LOCALNRANKS"}) {
-    const char* text = std::getenv(variable);
-    if (text && std::atoi(text) > 1)
-      throw InputError(
-          advised(fmt::format("started {} times by mpirun ({} = {}): each copy would compute the "
-                              "same case",
-                              text, variable, text),
-                  "start it once, without mpirun or with -n 1; --threads uses the cores of a node"));
-  }
 }
 
 Progress::Progress(std::string what, double total, bool quiet)

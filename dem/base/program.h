@@ -30,10 +30,6 @@ bool take_checkpoint_request();
 std::string resources_used();
 double wall_seconds();  ///< by the clock, since this process started
 
-/// Throws InputError where a launcher of MPI started several copies of this program, none of which knows of the
-/// others.
-void refuse_several_ranks();
-
 /// Progress with ETA on stderr: a line that rewrites itself on a terminal, else a line every 30 s or so.
 /// Quiet prints nothing. Costs a clock read per call.
 class Progress {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "dem/base/error.h"
-#include "dem/engine_liggghts.h"
 #include "dem/liggghts/deck.h"
+#include "dem/liggghts/plugin.h"
 #include "dem/liggghts/session.h"
 #include "dem/step_clock.h"
 
@@ -139,8 +139,8 @@ void LiggghtsEngine::advance(Bed& bed, double until_s) {
 }  // namespace
 }  // namespace liggghts
 
-std::unique_ptr<Engine> make_liggghts_engine(const Vec3& gravity_m_s2, double step_s) {
-  return std::make_unique<liggghts::LiggghtsEngine>(gravity_m_s2, step_s);
+extern "C" Engine* granrad_new_liggghts_engine(const Vec3& gravity_m_s2, double step_s) {
+  return new liggghts::LiggghtsEngine(gravity_m_s2, step_s);
 }
 
 }  // namespace granrad

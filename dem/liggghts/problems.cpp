@@ -3,8 +3,10 @@
 #include <algorithm>
 
 #include "dem/base/error.h"
+#include "dem/base/plugin.h"
 #include "dem/bed/wall_shape.h"
 #include "dem/engine_liggghts.h"
+#include "dem/liggghts/plugin.h"
 
 namespace granrad {
 
@@ -15,6 +17,7 @@ constexpr double lowest_restitution = 0.05;  // LIGGGHTS' own bound, exclusive
 }  // namespace
 
 std::vector<std::string> liggghts_problems(const Scene& scene) {
+  if (plugin_file("granrad_liggghts").empty()) return {liggghts_absent()};
   std::vector<std::string> problems;
   if (scene.precision == Precision::mixed)
     problems.push_back(advised("dem.precision = \"mixed\" is the native engine's", "leave it out"));

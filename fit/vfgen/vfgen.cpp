@@ -5,6 +5,7 @@
 #include "dem/base/error.h"
 #include "dem/base/program.h"
 #include "dem/base/toml/key_reference.h"
+#include "dem/ranks/ranks.h"
 #include "fit/generate/generate.h"
 #include "fit/vfgen/vfgen_commands.h"
 #include "fit/vfgen/vfgen_options.h"
@@ -136,21 +137,22 @@ int run(int argc, char** argv) {
   add_keys(app, body);
   add_curve(app, body);
   add_measure(app, body);
+  join_ranks();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? exit_ok : exit_bad_input;
   }
-  return run_program("vfgen", [&] {
-    install_signal_handlers();
-    const int code = body(quiet ? Verbosity::quiet : verbose ? Verbosity::verbose : Verbosity::normal);
-    if (verbose) fmt::print(stderr, "vfgen: {}\n", resources_used());
-    return code;
-  });
+  if (const auto name = app.get_subcommands().front()->get_name(); name != "trace")
+    refuse_several_ranks("vfgen " + name);
+  install_signal_handlers();
+  const int code = body(quiet ? Verbosity::quiet : verbose ? Verbosity::verbose : Verbosity::normal);
+  if (verbose) fmt::print(stderr, "vfgen: {}\n", resources_used());
+  return code;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  return run(argc, argv);
+  return leave_ranks(run_program("vfgen", [&] { return run(argc, argv); }));
 }

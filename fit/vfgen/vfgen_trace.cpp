@@ -6,6 +6,7 @@
 #include "dem/base/error.h"
 #include "dem/base/files/hdf5_file.h"
 #include "dem/base/program.h"
+#include "dem/ranks/ranks.h"
 #include "fit/vfgen/vfgen_commands.h"
 
 namespace granrad {
@@ -126,17 +127,17 @@ int run_trace(const TraceCommand& command, Verbosity verbosity) {
   if (command.output.extension() != ".h5")
     throw InputError(advised(fmt::format("--output: {} (view factors are HDF5)", command.output.string()),
                              "name it FILE.h5"));
-  require_files(command);
+  on_first_rank([&] { require_files(command); });
   const auto jobs = snapshots_to_trace(command);
   const auto snapshots = read_all(command, jobs);
   std::string failures;
-  for (std::size_t k = 0; k < jobs.size() && !interrupt_signal(); ++k) {
+  for (std::size_t k = 0; k < jobs.size() && !largest_over_ranks(interrupt_signal()); ++k) {
     const std::string snapshot = jobs[k].file.string();
     remark_on(snapshot, snapshots[k], verbosity);
     const auto traced =
         trace_shown(snapshots[k].enclosure, command.trace, snapshot, verbosity == Verbosity::quiet);
     const auto file = numbered(command.output, k + 1, jobs.size());
-    write_view_factors(file, traced);
+    on_first_rank([&] { write_view_factors(file, traced); });
     print_traced(file, traced, verbosity);
     if (!traced.check.failed.empty()) failures += fmt::format("\n{}: {}", file.string(), traced.check.failed);
   }

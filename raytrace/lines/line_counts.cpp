@@ -39,6 +39,10 @@ void PairCounts::count_events(std::size_t b, Scratch& scratch) {
   auto& [events, room, found, merged] = scratch;
   events.clear();
   for (const PairEvents& of_thread : events_) of_thread.collect(b, events);
+  if (!arrived_.empty()) {
+    const auto& from_others = arrived_[b - static_cast<std::size_t>(own_blocks().begin)];
+    events.insert(events.end(), from_others.begin(), from_others.end());
+  }
   if (events.empty()) return;
   sort_events(events, room, packing_.row_bits + packing_.column_bits);
 
@@ -71,19 +75,64 @@ void PairCounts::count_events(std::size_t b, Scratch& scratch) {
   pairs.assign(merged.data(), to);
 }
 
+/// Events of blocks that other ranks keep go there, each block's behind their number.
+void PairCounts::send_events() {
+  std::vector<std::vector<char>> to;
+  std::vector<std::uint32_t> events;
+  for (int r = 0; r < rank_count(); ++r) {
+    auto& bytes = to.emplace_back();
+    if (r == rank()) continue;
+    const RankPart theirs = part_of_rank(static_cast<std::int64_t>(blocks_.size()), r);
+    for (std::int64_t b = theirs.begin; b < theirs.end; ++b) {
+      events.assign(1, 0);
+      for (const PairEvents& of_thread : events_) of_thread.collect(static_cast<std::size_t>(b), events);
+      events[0] = static_cast<std::uint32_t>(events.size() - 1);
+      const auto* begin = reinterpret_cast<const char*>(events.data());
+      bytes.insert(bytes.end(), begin, begin + events.size() * sizeof events[0]);
+    }
+  }
+  const RankPart own = own_blocks();
+  arrived_.assign(static_cast<std::size_t>(own.end - own.begin), {});
+  for (const auto& bytes : exchanged_bytes(to)) {
+    const auto* from = reinterpret_cast<const std::uint32_t*>(bytes.data());
+    for (std::size_t b = 0; b < arrived_.size() && !bytes.empty(); ++b) {
+      arrived_[b].insert(arrived_[b].end(), from + 1, from + 1 + *from);
+      from += 1 + *from;
+    }
+  }
+}
+
+/// The sum over threads and ranks; to be called by every thread.
+void PairCounts::add_pairs(std::size_t of_thread) {
+#pragma omp atomic
+  pairs_ += of_thread;
+#pragma omp barrier
+#pragma omp master
+  {
+    auto sum = static_cast<std::int64_t>(pairs_);
+    sum_over_ranks({&sum, 1});
+    pairs_ = static_cast<std::size_t>(sum);
+  }
+#pragma omp barrier
+}
+
 void PairCounts::merge(std::uint64_t seed) {
   Scratch scratch;
-#pragma omp single
-  pairs_ = 0;
+  const RankPart own = own_blocks();
+#pragma omp master
+  {
+    pairs_ = 0;
+    if (rank_count() > 1) send_events();
+  }
+#pragma omp barrier
   std::size_t mine = 0;
 #pragma omp for schedule(dynamic) nowait
-  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+  for (std::int64_t k = own.begin; k < own.end; ++k) {
+    const auto b = static_cast<std::size_t>(k);
     count_events(b, scratch);
     mine += blocks_[b].pairs.size();
   }
-#pragma omp atomic
-  pairs_ += mine;
-#pragma omp barrier
+  add_pairs(mine);
 #pragma omp for schedule(static)
   for (std::size_t t = 0; t < events_.size(); ++t) events_[t].clear();
   for (bool first = true;; first = false) {
@@ -98,10 +147,8 @@ void PairCounts::merge(std::uint64_t seed) {
     }
     mine = 0;
 #pragma omp for schedule(dynamic) nowait
-    for (std::size_t b = 0; b < blocks_.size(); ++b) mine += thin(b, seed);
-#pragma omp atomic
-    pairs_ += mine;
-#pragma omp barrier
+    for (std::int64_t b = own.begin; b < own.end; ++b) mine += thin(static_cast<std::size_t>(b), seed);
+    add_pairs(mine);
   }
 }
 
@@ -218,8 +265,36 @@ PairCounts::Expanded PairCounts::expand() {
   return all;
 }
 
+/// Gives all ranks the blocks of each.
+void PairCounts::share_blocks() {
+  std::vector<std::size_t> pair_count, sample_count;
+  std::vector<PairCount> pairs;
+  std::vector<Sample> samples;
+  const RankPart own = own_blocks();
+  for (std::int64_t b = own.begin; b < own.end; ++b) {
+    Block& block = blocks_[static_cast<std::size_t>(b)];
+    pair_count.push_back(block.pairs.size());
+    sample_count.push_back(block.samples.size());
+    pairs.insert(pairs.end(), block.pairs.begin(), block.pairs.end());
+    samples.insert(samples.end(), block.samples.begin(), block.samples.end());
+    block = {};
+  }
+  pair_count = joined_over_ranks(pair_count), sample_count = joined_over_ranks(sample_count);
+  pairs = joined_over_ranks(pairs), samples = joined_over_ranks(samples);
+  auto pair = pairs.begin();
+  auto sample = samples.begin();
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    blocks_[b].pairs.assign(pair, pair + static_cast<std::ptrdiff_t>(pair_count[b]));
+    blocks_[b].samples.assign(sample, sample + static_cast<std::ptrdiff_t>(sample_count[b]));
+    pair += static_cast<std::ptrdiff_t>(pair_count[b]);
+    sample += static_cast<std::ptrdiff_t>(sample_count[b]);
+  }
+}
+
 SymmetricCounts PairCounts::finish() {
   events_.clear();
+  arrived_.clear();
+  if (rank_count() > 1) share_blocks();
   const VariancePools pools = pooled_variances();
   Expanded all = expand();
   SymmetricCounts sum;

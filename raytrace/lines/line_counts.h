@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "dem/ranks/ranks.h"
 #include "raytrace/exchange.h"
 #include "raytrace/line_pass/line_events.h"
 
@@ -18,7 +19,8 @@ struct SymmetricCounts {
 /// Counts S_ij, the lines on which surfaces i and j follow each other, as sorted lists of pairs i <= j (i =
 /// j: images of one sphere). Threads gather events by blocks of rows; now and then each block's events are
 /// sorted and merged into its list, all in the cache. Integer sums: the result does not depend on the order
-/// of events or on threads.
+/// of events or on threads. Of several ranks each keeps a part of the blocks: at each merge events go to the rank that
+/// keeps their block, and `finish` gives all blocks to all.
 class PairCounts {
  public:
   /// Bytes at the peak for each pair held: both halves of the result, and what they are made from.
@@ -65,6 +67,10 @@ class PairCounts {
   struct Expanded;
   struct VariancePools;
 
+  RankPart own_blocks() const { return part_of_rank(static_cast<std::int64_t>(blocks_.size())); }
+  void send_events();
+  void add_pairs(std::size_t of_thread);
+  void share_blocks();
   void count_events(std::size_t block, Scratch& scratch);
   std::size_t thin(std::size_t block, std::uint64_t seed);  ///< returns what is left
   void sample(std::size_t block);
@@ -76,6 +82,7 @@ class PairCounts {
   std::vector<char> kind_;
   std::vector<Block> blocks_;
   std::vector<PairEvents> events_;
+  std::vector<std::vector<std::uint32_t>> arrived_;  ///< [own block] events that other ranks found
   std::size_t max_pairs_, pairs_ = 0;
   int replicates_ = 0, unit_ = 1;
   std::uint32_t thinning_round_ = 0;

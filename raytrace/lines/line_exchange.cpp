@@ -9,6 +9,7 @@
 
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
+#include "dem/ranks/ranks.h"
 #include "raytrace/line_pass/line_pass.h"
 #include "raytrace/lines/line_chords.h"
 #include "raytrace/lines/line_counts.h"
@@ -74,7 +75,7 @@ LineSums sum_over_lines(const LineScene& scene, const LineOptions& options, int 
   const int block = static_cast<int>(std::clamp(events / ends, 1.0, static_cast<double>(directions)));
   PairCounts counts(std::move(kind), options.memory_limit_bytes / PairCounts::bytes_per_pair, block * ends,
                     threads);
-  std::int64_t leaked = 0;
+  std::int64_t leaked = 0, leaked_in_chords = 0;
   std::vector<ChordSums> chords;
   const int chord_samples = std::min(directions, chord_directions(scene));
   RayMonitor monitor(options.watch, static_cast<double>(directions) * options.replicates);
@@ -84,10 +85,11 @@ LineSums sum_over_lines(const LineScene& scene, const LineOptions& options, int 
     PairEvents& found = counts.events(omp_get_thread_num());
     for (int replicate = 0; replicate < options.replicates; ++replicate) {
       for (int from = 0; from < directions; from += block) {
+        const RankPart mine = part_of_rank(std::min(directions - from, block));
 #pragma omp for schedule(dynamic)
-        for (int k = from; k < std::min(directions, from + block); ++k) {
+        for (std::int64_t k = from + mine.begin; k < from + mine.end; ++k) {
           if (!monitor.go_on(1)) continue;
-          pass.aim(line_frame(options.seed, replicate, k, directions));
+          pass.aim(line_frame(options.seed, replicate, static_cast<int>(k), directions));
           if (scene.is_periodic())
             pass.emit_pairs([&](std::int32_t surface, std::int32_t from) {
               found.add(surface, static_cast<std::uint32_t>(from) << line_run_bits);
@@ -98,15 +100,21 @@ LineSums sum_over_lines(const LineScene& scene, const LineOptions& options, int 
         counts.merge(options.seed);
       }
 #pragma omp single
-      for (int k = 0; k < chord_samples; ++k) {
-        pass.aim(line_frame(options.seed, replicate, k * directions / chord_samples, directions));
-        chords.push_back(chord_sums(pass));
+      {
+        const std::int64_t before = pass.leaked();
+        for (int k = 0; k < chord_samples; ++k) {
+          pass.aim(line_frame(options.seed, replicate, k * directions / chord_samples, directions));
+          chords.push_back(chord_sums(pass));
+        }
+        leaked_in_chords += pass.leaked() - before;
       }
       counts.end_replicate();
     }
     leaked += pass.leaked();
   }
   monitor.throw_if_stopped();
+  if (rank() > 0) leaked -= leaked_in_chords;  // every rank measures all of them
+  sum_over_ranks({&leaked, 1});
   SymmetricCounts result = counts.finish();
   std::int64_t found = 0;
   for (auto c : result.count) found += c;

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "dem/base/error.h"
+#include "dem/ranks/ranks.h"
 #include "raytrace/line_pass/line_pass.h"
 #include "raytrace/lines/line_plan.h"
 #include "raytrace/lines/line_sweep.h"
@@ -45,6 +46,7 @@ std::vector<Sums> sum_over_lines(const LineScene& scene, const std::vector<std::
                                  const LineOptions& options, int directions) {
   std::vector<Sums> total(options.replicates, Sums(scene.surface_count(), 0));
   const std::vector<std::int32_t> sorted_power = scene.sorted(power);
+  const RankPart mine = part_of_rank(directions);
 #pragma omp parallel num_threads(line_threads(options.threads))
   {
     LinePass pass(scene);
@@ -52,8 +54,8 @@ std::vector<Sums> sum_over_lines(const LineScene& scene, const std::vector<std::
     for (int replicate = 0; replicate < options.replicates; ++replicate) {
       std::fill(own.begin(), own.end(), 0);
 #pragma omp for schedule(dynamic) nowait
-      for (int k = 0; k < directions; ++k) {
-        pass.aim(line_frame(options.seed, replicate, k, directions));
+      for (std::int64_t k = mine.begin; k < mine.end; ++k) {
+        pass.aim(line_frame(options.seed, replicate, static_cast<int>(k), directions));
         if (scene.is_periodic())
           receive_pairs(pass, power, own.data());
         else
@@ -63,8 +65,10 @@ std::vector<Sums> sum_over_lines(const LineScene& scene, const std::vector<std::
       for (std::size_t i = 0; i < own.size(); ++i) total[replicate][i] += own[i];
     }
   }
-  if (!scene.is_periodic())
-    for (Sums& sums : total) sums = scene.by_surface(sums);
+  for (Sums& sums : total) {
+    sum_over_ranks(sums);
+    if (!scene.is_periodic()) sums = scene.by_surface(sums);
+  }
   return total;
 }
 

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <omp.h>
 
-#include <cmath>
-
 #include "dem/base/error.h"
+#include "dem/ranks/ranks.h"
+#include "raytrace/paths/path_batches.h"
 #include "raytrace/paths/path_walker.h"
 
 namespace granrad {
@@ -34,26 +34,34 @@ std::vector<Piece> pieces_of(std::int64_t walks) {
   return pieces;
 }
 
-/// Tallies of the batches. Pieces come in their order, so that a thread leaves each batch once.
-std::vector<PathTally> run_batches(const PathWalker& walker, int threads) {
+/// Tallies of the batches that this rank worked at: its part of the pieces. Pieces come in their order, so that a
+/// thread, and a rank, leaves each batch once.
+BatchTallies run_batches(const PathWalker& walker, int threads) {
   const auto surfaces = static_cast<std::size_t>(walker.surfaces().count());
-  std::vector<PathTally> batches(path_batches, PathTally(surfaces));
+  BatchTallies batches(path_batches);
   const std::int64_t walks = walker.walks();
   const auto pieces = pieces_of(walks);
+  const RankPart mine = part_of_rank(static_cast<std::int64_t>(pieces.size()));
 #pragma omp parallel num_threads(threads)
   {
     PathTally own(surfaces);
-    int batch = 0;
+    int batch = -1;
     const auto hand_over = [&](int next) {
       if (next == batch) return;
+      if (batch >= 0) {
 #pragma omp critical
-      batches[static_cast<std::size_t>(batch)].add(own);
-      own.clear();
+        {
+          auto& sum = batches[static_cast<std::size_t>(batch)];
+          if (!sum) sum.emplace(surfaces);
+          sum->add(own);
+        }
+        own.clear();
+      }
       batch = next;
     };
 #pragma omp for schedule(dynamic, 1) nowait
-    for (std::size_t p = 0; p < pieces.size(); ++p) {
-      const Piece& piece = pieces[p];
+    for (std::int64_t p = mine.begin; p < mine.end; ++p) {
+      const Piece& piece = pieces[static_cast<std::size_t>(p)];
       hand_over(piece.batch);
       const std::int64_t first = first_walk(walks, piece.batch);
       const auto lattice = walker.lattice(piece.batch, first_walk(walks, piece.batch + 1) - first);
@@ -65,36 +73,15 @@ std::vector<PathTally> run_batches(const PathWalker& walker, int threads) {
   return batches;
 }
 
-/// Sum over the batches and the standard error of that sum, in quanta.
-template <class Value>
-std::pair<double, double> total_and_error(Value value_of_batch) {
-  Quanta total = 0;
-  for (int b = 0; b < path_batches; ++b) total += value_of_batch(b);
-  const double mean = static_cast<double>(total) / path_batches;
-  double squares = 0;
-  for (int b = 0; b < path_batches; ++b) {
-    const double d = static_cast<double>(value_of_batch(b)) - mean;
-    squares += d * d;
-  }
-  return {static_cast<double>(total), std::sqrt(squares * path_batches / (path_batches - 1))};
-}
-
-RadiativeHeat assemble(const PathWalker& walker, const std::vector<PathTally>& batches) {
-  const PathSurfaces& surfaces = walker.surfaces();
-  const double quantum = walker.quantum_W();
+RadiativeHeat in_watts(const BatchSums& sums, double quantum_W) {
   RadiativeHeat result;
-  std::vector<Quanta> given(path_batches, 0);
-  for (std::int32_t s = 0; s < surfaces.count(); ++s) {
-    const auto [total, error] = total_and_error([&](int b) { return batches[b].heat[s]; });
-    result.heat_W.push_back(total * quantum);
-    result.standard_error_W.push_back(error * quantum);
-    if (surfaces.is_wall(s))
-      for (int b = 0; b < path_batches; ++b) given[b] -= batches[b].heat[s];
+  for (const auto& [total, error] : sums.surface) {
+    result.heat_W.push_back(total * quantum_W);
+    result.standard_error_W.push_back(error * quantum_W);
   }
-  const auto [total, error] = total_and_error([&](int b) { return given[b]; });
-  result.isothermal_wall_heat_W = total * quantum;
-  result.isothermal_wall_heat_error_W = error * quantum;
-  for (const auto& batch : batches) result.rays += batch.segments;
+  result.isothermal_wall_heat_W = sums.given.total * quantum_W;
+  result.isothermal_wall_heat_error_W = sums.given.error * quantum_W;
+  result.rays = sums.segments;
   return result;
 }
 
@@ -109,14 +96,13 @@ RadiativeHeat trace_paths(const Enclosure& enclosure, const EmbreeTracer& tracer
                             options.walks, 2 * path_batches),
                 "10000 is usual"));
   const PathWalker walker(enclosure, tracer, state, options, update);
-  const auto batches = run_batches(walker, options.threads > 0 ? options.threads : omp_get_max_threads());
-  std::int64_t lost = 0;
-  for (const auto& batch : batches) lost += batch.lost;
-  if (static_cast<double>(lost) > 1e-3 * static_cast<double>(walker.walks()))
+  const BatchSums sums = sum_batches(
+      run_batches(walker, options.threads > 0 ? options.threads : omp_get_max_threads()), walker.surfaces());
+  if (static_cast<double>(sums.lost) > 1e-3 * static_cast<double>(walker.walks()))
     throw NumericalError(
-        advised(fmt::format("paths: {} of {} walks leaked or did not end", lost, walker.walks()),
+        advised(fmt::format("paths: {} of {} walks leaked or did not end", sums.lost, walker.walks()),
                 "close the walls, and let some surface absorb"));
-  return assemble(walker, batches);
+  return in_watts(sums, walker.quantum_W());
 }
 
 }  // namespace granrad

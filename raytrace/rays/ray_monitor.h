@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "dem/base/error.h"
+#include "dem/ranks/ranks.h"
 
 namespace granrad {
 
@@ -17,15 +18,18 @@ class TraceStopped : public NumericalError {
   TraceStopped() : NumericalError("tracing stopped before its end: nothing was kept") {}
 };
 
-/// Counts the work that several threads have done and asks the watch whether to go on.
+/// Counts the work that several threads have done and asks the watch whether to go on. Of several ranks each counts its
+/// own part.
 class RayMonitor {
  public:
-  RayMonitor(TraceWatch watch, double total) : watch_(std::move(watch)), total_(total) {}
+  /// `total` of all ranks.
+  RayMonitor(TraceWatch watch, double total) : watch_(std::move(watch)), total_(total / rank_count()) {}
 
   /// To be called by any thread with the work it begins; false: stop.
   bool go_on(std::int64_t work);
+  /// To be called by every rank: where one was stopped, all are.
   void throw_if_stopped() const {
-    if (stopped_) throw TraceStopped();
+    if (watch_ && largest_over_ranks(stopped_) != 0) throw TraceStopped();
   }
 
  private:

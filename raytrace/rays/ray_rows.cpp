@@ -11,29 +11,16 @@
 #include "dem/base/error.h"
 #include "dem/base/morton.h"
 #include "dem/base/random.h"
+#include "dem/ranks/ranks.h"
 #include "raytrace/rays/hit_tally.h"
 #include "raytrace/rays/ray_monitor.h"
+#include "raytrace/rays/ray_row.h"
 #include "raytrace/rays/variance_table.h"
 #include "raytrace/stated_error.h"
 
 namespace granrad {
 
 namespace {
-
-/// What one surface's rays found.
-struct TracedRow {
-  std::vector<HitEntry> entries;
-  std::int64_t launched = 0, leaked = 0, chords = 0;
-  double chord_sum_m = 0, chord_square_sum_m2 = 0;
-  HitEntry stated;  ///< the walls whose error is stated, as if they were one
-
-  void add_chords(const TracedRow& more) {
-    leaked += more.leaked;
-    chords += more.chords;
-    chord_sum_m += more.chord_sum_m;
-    chord_square_sum_m2 += more.chord_square_sum_m2;
-  }
-};
 
 /// Enough independent scrambles that the variance found from them, pooled over the enclosure, is known to
 /// about 10 %; two are enough for a bed, and leave the low-discrepancy sets as large as they can be.
@@ -73,15 +60,14 @@ class RowTracer {
   int replicates() const { return replicates_; }
   const std::vector<char>& stated() const { return stated_; }
 
-  /// Throws TraceStopped.
+  /// The rows of all ranks. Throws TraceStopped.
   std::vector<TracedRow> trace(const std::vector<std::int32_t>& surfaces) {
     std::vector<TracedRow> rows(surfaces.size());
-    const std::vector<std::size_t> order = neighbours_together(surfaces);
+    const std::vector<std::size_t> mine = own_places(surfaces);
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
-    for (std::size_t n = 0; n < order.size(); ++n) {
-      const std::size_t k = order[n];
-      if (per_replicate(surfaces[k]) <= part_rays) rows[k] = trace_surface(surfaces[k], own_tally());
-    }
+    for (std::size_t n = 0; n < mine.size(); ++n)
+      rows[mine[n]] = trace_surface(surfaces[mine[n]], own_tally());
+    share_rows(rows, mine);
     for (std::size_t k = 0; k < surfaces.size(); ++k)
       if (per_replicate(surfaces[k]) > part_rays) rows[k] = trace_in_parts(surfaces[k]);
     monitor_.throw_if_stopped();
@@ -104,6 +90,21 @@ class RowTracer {
     std::vector<std::size_t> order;
     for (const auto& key : keys) order.push_back(key.second);
     return order;
+  }
+
+  /// Of the places of surfaces that are traced whole, in the order of neighbours_together, a rank takes those whose rays
+  /// lie in its part of all rays.
+  std::vector<std::size_t> own_places(const std::vector<std::int32_t>& surfaces) const {
+    std::vector<std::size_t> whole, mine;
+    std::int64_t total = 0, before = 0;
+    for (const std::size_t k : neighbours_together(surfaces))
+      if (per_replicate(surfaces[k]) <= part_rays) whole.push_back(k), total += per_replicate(surfaces[k]);
+    const RankPart part = part_of_rank(total);
+    for (const std::size_t k : whole) {
+      if (rank_count() == 1 || (before >= part.begin && before < part.end)) mine.push_back(k);
+      before += per_replicate(surfaces[k]);
+    }
+    return mine;
   }
 
   std::int64_t per_replicate(std::int32_t surface) const {
@@ -129,8 +130,11 @@ class RowTracer {
   TracedRow trace_in_parts(std::int32_t surface) {
     const std::int64_t rays = per_replicate(surface), parts = (rays + part_rays - 1) / part_rays;
     std::vector<TracedRow> found(static_cast<std::size_t>(parts * replicates_));
+    const RankPart mine = part_of_rank(parts * replicates_);
+    std::vector<std::size_t> places(static_cast<std::size_t>(mine.end - mine.begin));
+    std::iota(places.begin(), places.end(), static_cast<std::size_t>(mine.begin));
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
-    for (std::size_t k = 0; k < found.size(); ++k) {
+    for (const std::size_t k : places) {
       const auto part = static_cast<std::int64_t>(k) % parts;
       const auto replicate = static_cast<std::int32_t>(static_cast<std::int64_t>(k) / parts);
       found[k] = trace_rays(surface, replicate, part * part_rays, std::min(rays, (part + 1) * part_rays),
@@ -138,6 +142,7 @@ class RowTracer {
       own_tally().end_replicate();
       found[k].entries = own_tally().take();
     }
+    share_rows(found, places);
     TracedRow row;
     HitTally& tally = tallies_[0];
     for (std::size_t k = 0; k < found.size(); ++k) {

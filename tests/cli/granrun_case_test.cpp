@@ -184,12 +184,13 @@ TEST(GranrunCase, GoesOnWithOtherIntervals) {
   EXPECT_NE(content(folder / "run.hdf.series").find("0.04"), std::string::npos);
 }
 
-TEST(GranrunCase, SeveralRanksAreRefused) {
+// A launcher that says four and an MPI that knows of one: its ranks would write to one folder.
+TEST(GranrunCase, RanksThatDoNotKnowEachOtherAreRefused) {
   Scratch scratch;
   const auto scene = scratch.write("plug.toml", small_plug);
-  setenv("OMPI_COMM_WORLD_SIZE", "4", 1);
+  setenv("PMI_SIZE", "4", 1);
   const auto outcome = granrun(scratch, run_line(scene, scratch.root / "case"));
-  unsetenv("OMPI_COMM_WORLD_SIZE");
+  unsetenv("PMI_SIZE");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.err.find("mpirun"), std::string::npos) << outcome.err;
   EXPECT_FALSE(fs::exists(scratch.root / "case"));

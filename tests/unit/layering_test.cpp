@@ -52,11 +52,13 @@ const std::map<std::string, std::vector<std::string>> arrows = [] {
     for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
     return all;
   };
+  const Folders ranks = {"dem/ranks/ranks.h"};
   const Folders base = {"dem/base/"}, bed = join({base, {"dem/bed/"}}), io = join({bed, {"dem/io/"}});
   const Folders mesh = join({bed, {"dem/mesh/"}});
   const Folders scene = join({io, mesh, {"dem/scene/"}}), packing = join({bed, {"dem/packing/"}});
   const Folders engine = join({scene, {"dem/engine.h", "dem/step_clock.h", "dem/step_limit.h"}});
   const Folders enclosure = join({bed,
+                                  ranks,
                                   {"raytrace/enclosure.h", "raytrace/exact.h", "raytrace/exchange.h",
                                    "raytrace/exchange_source.h", "raytrace/facets.h", "raytrace/mesh_check.h",
                                    "raytrace/same_geometry.h", "raytrace/stated_error.h"}});
@@ -87,6 +89,7 @@ const std::map<std::string, std::vector<std::string>> arrows = [] {
       {"dem/base/", {"dem/base/"}},
       {"dem/base/files/", {"dem/base/error.h", "dem/base/vec3.h", "dem/base/files/"}},
       {"dem/base/toml/", base},
+      {"dem/ranks/", join({base, {"dem/ranks/"}})},
       {"dem/page/", join({base, {"dem/page/"}})},
       {"dem/bed/", bed},
       {"dem/io/", io},
@@ -96,7 +99,7 @@ const std::map<std::string, std::vector<std::string>> arrows = [] {
       {"dem/feed/", join({scene, packing, {"dem/feed/"}})},
       {"dem/native/", join({engine, {"dem/engine_native.h", "dem/native/"}})},
       {"dem/replay/", join({engine, {"dem/engine_replay.h", "dem/replay/"}})},
-      {"dem/liggghts/", join({engine, {"dem/engine_liggghts.h", "dem/liggghts/"}})},
+      {"dem/liggghts/", join({engine, ranks, {"dem/engine_liggghts.h", "dem/liggghts/"}})},
       {"raytrace/", enclosure},
       {"raytrace/embree/", embree},
       {"raytrace/rays/", rays},
@@ -173,7 +176,7 @@ TEST(Layering, ThirdPartyHeadersStayInTheirFile) {
       {"zip.h", {"dem/base/files/npz_file.cpp"}},
       {"pugixml", {"dem/io/import_vtk_xml.cpp"}},
       {"liggghts/", {"dem/liggghts/session.cpp"}},
-      {"mpi.h", {"dem/liggghts/session.cpp"}},
+      {"mpi.h", {"dem/ranks/mpi_group.cpp", "dem/liggghts/session.cpp"}},
       {"Eigen/",
        {"coupling/heat/radiosity", "raytrace/slab/steady_network.cpp", "coupling/heat/harmonic_radiosity",
         "fit/fitting/least_squares.cpp"}},
