@@ -178,6 +178,7 @@ EOF
     ;;
   paper | validate)
     what=$1
+    [[ $what == paper ]] || packages+=("${liggghts_engine[@]}" "${test_tools[@]}")
     quick=()
     [[ ${2:-} == --quick ]] && quick=(--quick)
     set_up
@@ -190,7 +191,8 @@ EOF
       [[ ! -f $out/report.html ]] || cp "$out/report.html" "$out/paper.html"
       say "page: $out/paper.html, numbers: $out/claims.csv"
     else
-      build granrun vfgen test_analytic_extinction test_cli_granrun_measure
+      build granrun vfgen test_analytic_{extinction,view_factors,paths,heating,gas_lens} test_cli_granrun_measure \
+        test_physics_{two_body,bulk_flow}
       book=$root/docs/validation.md
       ((${#quick[@]})) && book=$out/validation.md
       say "the validation book"

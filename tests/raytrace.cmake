@@ -1,7 +1,7 @@
 # tests of raytrace: granrad_test(shelf/name libraries...)
 granrad_test(unit/closure granrad_raytrace)
 granrad_test(unit/damaged_hdf5 granrad_raytrace hdf5::hdf5)
-granrad_test(analytic/view_factors granrad_raytrace)
+granrad_test(analytic/view_factors granrad_raytrace nlohmann_json::nlohmann_json)
 granrad_test(physics/hard_enclosures granrad_raytrace)
 granrad_test(physics/total_exchange granrad_raytrace)
 granrad_test(physics/traced_bed granrad_raytrace)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
@@ -64,9 +65,23 @@ std::vector<double> emissivities(const Bed& bed, const Slab& slab) {
 /// One replicate of the rays.
 struct Replicate {
   std::array<double, 3> k{};
-  double total = 0, overall = 0, resistance = 0, bed_error = 0;
+  double total = 0, overall = 0, hot_resistance = 0, cold_resistance = 0, bed_error = 0;
   SlabRadiation radiation;
 };
+
+/// Whether links lead from plate to plate: a heap that touches its floor alone has no conductivity between plates.
+bool joins_plates(const Slab& slab, const Paths& paths) {
+  std::vector<std::size_t> root(slab.spheres() + 2);
+  std::iota(root.begin(), root.end(), std::size_t{0});
+  const auto find = [&](std::size_t k) {
+    while (root[k] != k) k = root[k] = root[root[k]];
+    return k;
+  };
+  for (const auto& links : paths)
+    for (const Link& link : links)
+      root[find(static_cast<std::size_t>(link.a))] = find(static_cast<std::size_t>(link.b));
+  return find(slab.spheres()) == find(slab.spheres() + 1);
+}
 
 void layer_means(const Slab& slab, const std::vector<double>& u, ConductivityResult& result) {
   const auto layers =
@@ -105,7 +120,8 @@ Replicate evaluate(const Slab& slab, const Paths& paths, double radiation_W_m2K,
   r.total = r.k[0] + r.k[1] + r.k[2];
   const double q = flux(slab, all, u, slab.low_m, slab.high_m);
   r.overall = q * slab.distance_m();
-  r.resistance = 0.5 * ((1 - line.at_low) + line.at_high) / q;
+  r.hot_resistance = (1 - line.at_low) / q;
+  r.cold_resistance = line.at_high / q;
   r.bed_error = std::abs(line.slope_error_per_m / line.slope_per_m);
   if (!paths[2].empty()) r.radiation = radiation_between_plates(slab, paths[2]);
   result.line_at_hot = line.at_low;
@@ -145,7 +161,11 @@ void summarise(const std::vector<Replicate>& all, ConductivityResult& result) {
   result.overall = mean(
       all, [](const auto& r) { return r.overall; }, 0);
   result.wall_resistance_m2K_W = mean(
-      all, [](const auto& r) { return r.resistance; }, 0);
+      all, [](const auto& r) { return 0.5 * (r.hot_resistance + r.cold_resistance); }, 0);
+  result.hot_resistance_m2K_W = mean(
+      all, [](const auto& r) { return r.hot_resistance; }, 0);
+  result.cold_resistance_m2K_W = mean(
+      all, [](const auto& r) { return r.cold_resistance; }, 0);
   result.exchange_factor = mean(
       all, [](const auto& r) { return r.radiation.exchange_factor; }, factor_bed);
   result.radiative_flux = mean(
@@ -183,6 +203,9 @@ ConductivityResult measure_conductivity(const Bed& given, const ConductionSettin
           advised("no particle touches a plate, or exchanges heat with one",
                   "set contact = true for the plates (the ends of a plug do not touch by themselves), or "
                   "add [radiation]"));
+    if (!joins_plates(slab, paths))
+      throw InputError(advised("no heat passes from plate to plate: the bed does not reach both",
+                               "move a plate to the bed (box.size_m), or add [gas] or [radiation]"));
   }
   summarise(all, result);
   return result;

@@ -28,8 +28,10 @@ struct ConductivityResult {
   Estimate total, solid, gas, radiation;  ///< k of the middle half by path, W/(m K)
   Estimate overall;                       ///< q L / dT between the plates, their layers included
   Estimate wall_resistance_m2K_W;         ///< of one plate: from the line of the middle half to the plate
-  Estimate exchange_factor;               ///< F in k_r = 4 F d sigma T^3, radiation alone
-  Estimate radiative_flux;                ///< q / (E_hot - E_cold) between the plates, radiation alone
+  Estimate hot_resistance_m2K_W,
+      cold_resistance_m2K_W;  ///< of each: a heap touches its floor and not its lid
+  Estimate exchange_factor;   ///< F in k_r = 4 F d sigma T^3, radiation alone
+  Estimate radiative_flux;    ///< q / (E_hot - E_cold) between the plates, radiation alone
   std::vector<double> layer_m,
       layer_temperature;  ///< mean (T - T_cold) / (T_hot - T_cold) of layers half a d thick
   double line_at_hot = 0, line_at_cold = 0;  ///< the line of the middle half, continued to the plates

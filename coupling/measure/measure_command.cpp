@@ -66,6 +66,8 @@ nlohmann::ordered_json as_json(const ConductivityResult& r) {
   put(json, "k_radiation_W_mK", r.radiation);
   put(json, "k_overall_W_mK", r.overall);
   put(json, "wall_resistance_m2K_W", r.wall_resistance_m2K_W);
+  put(json, "wall_resistance_hot_m2K_W", r.hot_resistance_m2K_W);
+  put(json, "wall_resistance_cold_m2K_W", r.cold_resistance_m2K_W);
   json["wall_layer_diameters"] = r.total.value * r.wall_resistance_m2K_W.value / r.diameter_m;
   put(json, "exchange_factor", r.exchange_factor);
   put(json, "radiative_flux", r.radiative_flux);

@@ -22,6 +22,7 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 double number(const std::string& cell, const std::string& where, double otherwise) {
   if (cell.empty()) return otherwise;
   char* end = nullptr;
+  if (cell == "?") return unknown;
   const double value = std::strtod(cell.c_str(), &end);
   if (*end != '\0') throw InputError(fmt::format("{}: {} (must be a number)", where, cell));
   return value;
@@ -90,10 +91,11 @@ std::vector<Judgement> judge(const fs::path& file, const Study&, const std::vect
         j.ours = evaluate_with_braces(
             claim.ours, [&](const std::string& name) { return find(name, rows, curves, j.points); });
         j.difference_pct = 100 * (j.ours.value / claim.reference - 1);
-        j.verdict = !std::isfinite(j.ours.value)      ? "not run"
-                    : !std::isfinite(claim.reference) ? "told"
-                    : agrees(j)                       ? "agrees"
-                                                      : "differs";
+        j.verdict = !std::isfinite(j.ours.value)                                    ? "not run"
+                    : !std::isfinite(claim.reference)                               ? "told"
+                    : claim.tolerance_pct <= 0 && !std::isfinite(claim.uncertainty) ? "uncertainty unknown"
+                    : agrees(j)                                                     ? "agrees"
+                                                                                    : "differs";
       }
     } catch (const InputError& error) {
       problems.push_back(fmt::format("{}: claim {}: {}", file.string(), claim.id, error.what()));
@@ -129,18 +131,26 @@ std::vector<QuantityBias> biases(const std::vector<Judgement>& judged) {
   std::vector<QuantityBias> all;
   for (const auto& j : judged) {
     if (!std::isfinite(j.difference_pct)) continue;
+    if (!(j.difference_pct > -100)) continue;  // no logarithm: another sign than the reference
     auto at =
         std::find_if(all.begin(), all.end(), [&](const auto& q) { return q.quantity == j.claim.quantity; });
-    if (at == all.end()) at = all.insert(all.end(), {j.claim.quantity, 0, 0, 0});
+    if (at == all.end()) at = all.insert(all.end(), {j.claim.quantity, 0, 0, 0, 0});
+    const double ratio = std::log1p(j.difference_pct / 100), own = j.ours.error / j.ours.value;
     ++at->count;
-    at->bias_pct += j.difference_pct;
-    at->sigma_pct += j.difference_pct * j.difference_pct;
+    at->bias_pct += ratio;
+    at->sigma_pct += ratio * ratio;
+    at->reference_pct +=
+        std::pow(j.claim.uncertainty / j.claim.reference, 2) + (std::isfinite(own) ? own * own : 0);
   }
   for (auto& q : all) {
     const auto n = static_cast<double>(q.count);
-    q.bias_pct /= n;
-    q.sigma_pct =
-        n > 1 ? std::sqrt(std::max(0.0, (q.sigma_pct - n * q.bias_pct * q.bias_pct) / (n - 1))) : unknown;
+    const double mean = q.bias_pct / n, reference = q.reference_pct / n;
+    const double scatter = n > 1 ? (q.sigma_pct - n * mean * mean) / (n - 1) : unknown;
+    const double known = std::isfinite(reference) ? reference : 0;
+    const double model = std::max(0.0, scatter - known);
+    q.bias_pct = 100 * (n > 1 ? std::expm1(mean + (model - known) / 2) : std::expm1(mean));
+    q.sigma_pct = n > 1 ? 100 * std::sqrt(model) : unknown;
+    q.reference_pct = 100 * std::sqrt(reference);
   }
   return all;
 }

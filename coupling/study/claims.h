@@ -22,7 +22,7 @@ std::vector<FittedCurve> fit_curves(const Study& study, const std::vector<StudyR
 
 /// A number that someone printed or that is known exactly: a line of a CSV file with the columns
 /// id,quantity,class,place,claim,unit,reference,uncertainty,tolerance_pct,ours,why (any order, text cells may be
-/// quoted). `ours` is a formula of {POINT:QUANTITY} and {fit NAME:COEFFICIENT}; empty: not reproducible as
+/// quoted). An uncertainty of ? is not known: without a tolerance there is no verdict. `ours` is a formula of {POINT:QUANTITY} and {fit NAME:COEFFICIENT}; empty: not reproducible as
 /// stated, or what the column verdict says, and `why` tells. An empty reference: a statement without a number, ours is told beside it.
 struct Claim {
   std::string id, quantity, kind, place, text, unit, ours, why, verdict;
@@ -48,12 +48,15 @@ std::string claims_csv(const std::vector<Judgement>& judged);
 /// "3.32 ± 0.02": two digits of the error, and as many of the value.
 std::string with_error(const Measured& measured);
 
-/// Bias and scatter of the relative differences of one quantity, as validation guides state a model's
-/// uncertainty: mean and standard deviation of ours / reference - 1, in per cent.
+/// Bias and relative standard deviation of one quantity, as the FDS Validation Guide (NIST SP 1018-3, ch. 4) states
+/// them: with r = ours / reference over n claims, s^2 = var(ln r), and sigma_E the root mean square of the relative
+/// standard uncertainties of the references (and of ours beside them), sigma_M^2 = max(0, s^2 - sigma_E^2) and
+/// 1 + bias = exp(mean(ln r) + (sigma_M^2 - sigma_E^2) / 2). In per cent. One claim alone: r - 1, and no sigma.
 struct QuantityBias {
   std::string quantity;
   std::size_t count = 0;
   double bias_pct = 0, sigma_pct = 0;
+  double reference_pct = 0;  ///< sigma_E; nan: unknown for one of them, then sigma_M holds it too
 };
 std::vector<QuantityBias> biases(const std::vector<Judgement>& judged);
 

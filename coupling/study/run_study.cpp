@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "coupling/study/claims_book.h"
 #include "coupling/study/study_page.h"
 #include "coupling/study/study_tables.h"
 #include "dem/base/error.h"

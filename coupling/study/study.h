@@ -34,6 +34,16 @@ struct StudyColumn {
   std::string name, formula;
 };
 
+/// A mean over the particles between two planes of the box, taken from the frames of a run: a quantity of its name.
+struct StudyProbe {
+  std::string name, group;  ///< group empty: every run
+  std::string what;         ///< temperature_K, velocity_m_s (downwards) or count
+  int axis = 2;
+  double from = 0, to = 0;    ///< from the lower face of the box
+  bool in_diameters = false;  ///< from and to are in mean diameters, else in m
+  bool last = true;           ///< of the last frame; else the mean over the second half of the frames
+};
+
 /// A curve through points of the study, by `vfgen curve`.
 struct StudyFit {
   std::string name, x, y, form, group;
@@ -62,13 +72,14 @@ struct StudyFigure {
 ///   [[vary]]  names = ["fine", "coarse"]            set = [["a=1", "b=2"], ["a=3"]]        rows of sets
 ///   [[case]]  name, set, unset, kind, scene, start, from, options           a single case beside them
 ///   [[group]] name, and all of the above once more: several base scenes in one study
-///   [[column]] name, formula;  [[fit]];  [[figure]];  [claims] file
+///   [[column]] name, formula;  [[probe]];  [[fit]];  [[figure]];  [claims] file
 /// [sweep] is the old name of [study].
 struct Study {
   std::filesystem::path file;
   std::string title;
   std::vector<StudyCase> cases;
   std::vector<StudyColumn> columns;
+  std::vector<StudyProbe> probes;
   std::vector<StudyFit> fits;
   std::vector<StudyFigure> figures;
   std::filesystem::path claims;  ///< CSV, see claims.h

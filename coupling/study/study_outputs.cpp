@@ -1,5 +1,7 @@
 #include "coupling/study/study_outputs.h"
 
+#include "dem/base/constants.h"
+
 namespace granrad {
 
 namespace {
@@ -25,6 +27,27 @@ StudyFigure read_figure(TomlTable table) {
   return figure;
 }
 
+StudyProbe read_probe(TomlTable table) {
+  StudyProbe probe;
+  probe.name = table.string({"name", "of the quantity"});
+  probe.group = table.string({"group", "whose runs have it", "all"}, "");
+  probe.what = table.choice({"what", "mean over the particles, velocity downwards; or their number"},
+                            {"temperature_K", "velocity_m_s", "count"}, "temperature_K");
+  probe.axis = table.choice({"axis", "across the planes"}, {"x", "y", "z"}, "z").front() - 'x';
+  probe.in_diameters = table.has("from_diameters") || table.has("to_diameters");
+  const double from_m =
+      table.number({"from_m", "lower plane, from the lower face of the box", "the face"}, {.unit = "m"}, 0);
+  const double to_m = table.number({"to_m", "upper plane", "no limit"}, {.unit = "m"}, infinity);
+  const double from_d = table.number({"from_diameters", "the same in mean diameters"}, {}, 0);
+  const double to_d = table.number({"to_diameters", "the same in mean diameters"}, {}, infinity);
+  probe.from = probe.in_diameters ? from_d : from_m;
+  probe.to = probe.in_diameters ? to_d : to_m;
+  probe.last = table.choice({"frames", "the last, or the mean over the second half"}, {"last", "second_half"},
+                            "last") == "last";
+  if (!(probe.to > probe.from)) table.problem("", "a probe needs from < to");
+  return probe;
+}
+
 StudyFit read_fit(TomlTable table) {
   StudyFit fit;
   fit.name = table.string({"name", "by which claims refer to it"});
@@ -46,6 +69,9 @@ void read_outputs(TomlTable& root, Study& study) {
   for (auto& column : root.tables({"column", "A further column of study.csv"}))
     study.columns.push_back({column.string({"name", "of the column"}),
                              column.string({"formula", "of other columns; errors are carried through it"})});
+  for (auto& probe :
+       root.tables({"probe", "A quantity of runs: a mean over the particles between two planes of the box"}))
+    study.probes.push_back(read_probe(probe));
   for (auto& fit : root.tables({"fit", "A curve through two columns, by vfgen curve"}))
     study.fits.push_back(read_fit(fit));
   for (auto& figure : root.tables({"figure", "A figure of the page"}))

@@ -164,7 +164,7 @@ void add_claims(HtmlReport& page, const StudyOutcome& outcome) {
     not_possible += j.verdict.starts_with("not reproducible");
     told += j.verdict == "told";
     rows.push_back(
-        {j.claim.id, j.claim.place, j.claim.text,
+        {j.claim.id, j.claim.quantity, j.claim.place, j.claim.text,
          std::isfinite(j.claim.reference) ? with_error({j.claim.reference, j.claim.uncertainty}) : "",
          with_error(j.ours), j.claim.unit,
          std::isfinite(j.difference_pct) ? fmt::format("{:+.1f} %", j.difference_pct) : "", j.verdict,
@@ -175,7 +175,9 @@ void add_claims(HtmlReport& page, const StudyOutcome& outcome) {
       fmt::format("{} numbers: {} agree, {} differ, {} cannot be reproduced as stated, {} are told beside "
                   "a statement without a number.",
                   rows.size(), agree, differ, not_possible, told));
-  page.table({"", "place", "claim", "reference", "ours", "unit", "difference", "verdict", "why"}, rows);
+  page.filtered_table(
+      {"", "quantity", "place", "claim", "reference", "ours", "unit", "difference", "verdict", "why"}, rows,
+      {8, 1, 2});
 }
 
 void add_fits(HtmlReport& page, const StudyOutcome& outcome) {
@@ -223,12 +225,6 @@ void add_points(HtmlReport& page, const StudyOutcome& outcome) {
         page.paragraph(fmt::format("{} failed: {}", row.of->point, record.message));
 }
 
-std::string md_cell(const std::string& text) {
-  std::string out;
-  for (const char c : text) out += c == '|' ? std::string("\\|") : std::string(1, c);
-  return out;
-}
-
 }  // namespace
 
 void write_study_page(const std::filesystem::path& file, const StudyOutcome& outcome) {
@@ -246,47 +242,6 @@ void write_study_page(const std::filesystem::path& file, const StudyOutcome& out
   add_fits(page, outcome);
   add_points(page, outcome);
   page.write(file);
-}
-
-std::string claims_book(const StudyOutcome& outcome) {
-  bool whole = true;
-  for (const auto& row : outcome.rows) whole = whole && row.status() == "finished";
-  const std::string stem = outcome.study.file.stem().string();
-  std::string text = fmt::format("# {}\n\n", outcome.study.title);
-  text += fmt::format(
-      "Written by `granrun study data/studies/{}.toml -o out/{} --book FILE` ({}) from `{}`; a second run gives the "
-      "same. {}Class: **A** exact or by quadrature, **E** experiment, **P** published computation or fit, **R** another "
-      "program. *agrees*: within the tolerance stated, or where none is stated within two standard errors of ours and "
-      "the reference together. Failures stay in the table.\n\n",
-      stem, stem, stem == "validation" ? "`./do validate`" : "`./do paper`",
-      outcome.study.claims.filename().string(),
-      whole ? "" : "**A part of the study**: numbers of cases that were not run say so. ");
-  text +=
-      "| | quantity | case | class | ours | reference | bias | verdict |\n|---|---|---|---|---|---|---|---|\n";
-  for (const auto& j : outcome.judged)
-    text += fmt::format(
-        "| {} | {} | {} | {} | {} {} | {} | {} | {}{} |\n", j.claim.id, md_cell(j.claim.quantity),
-        md_cell(j.claim.text), j.claim.kind, with_error(j.ours), j.claim.unit,
-        std::isfinite(j.claim.reference) ? with_error({j.claim.reference, j.claim.uncertainty}) : "",
-        std::isfinite(j.difference_pct) ? fmt::format("{:+.2f} %", j.difference_pct) : "",
-        j.verdict == "differs" ? "**differs**" : j.verdict,
-        j.claim.tolerance_pct > 0 ? fmt::format(" (≤ {:g} %)", j.claim.tolerance_pct) : "");
-  text += "\n## Bias and scatter by quantity\n\n| quantity | numbers | bias | σ |\n|---|---|---|---|\n";
-  for (const auto& q : biases(outcome.judged))
-    text += fmt::format("| {} | {} | {:+.2f} % | {} |\n", md_cell(q.quantity), q.count, q.bias_pct,
-                        std::isfinite(q.sigma_pct) ? fmt::format("{:.2f} %", q.sigma_pct) : "");
-  text += "\n## Notes, and the command that makes each number\n\n";
-  for (const auto& j : outcome.judged) {
-    text += fmt::format("- **{}** {} {}", j.claim.id, j.claim.place, j.claim.why);
-    std::set<std::string> told;
-    for (const auto& point : j.points)
-      if (told.insert(point).second)
-        text +=
-            fmt::format(" `granrun study data/studies/{} -o out/{} --case {}`.",
-                        outcome.study.file.filename().string(), outcome.study.file.stem().string(), point);
-    text += "\n";
-  }
-  return text;
 }
 
 }  // namespace granrad

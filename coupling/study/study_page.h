@@ -19,8 +19,4 @@ struct StudyOutcome {
 /// fits, every point as a table, cases that failed. With bars of one standard error.
 void write_study_page(const std::filesystem::path& file, const StudyOutcome& outcome);
 
-/// The claims as a book in Markdown: quantity, case, class, ours, reference, bias, verdict, the command that
-/// makes each, and per quantity a bias and a scatter.
-std::string claims_book(const StudyOutcome& outcome);
-
 }  // namespace granrad

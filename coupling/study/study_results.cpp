@@ -11,6 +11,7 @@
 #include "dem/base/error.h"
 #include "dem/base/files/csv.h"
 #include "dem/base/files/text_file.h"
+#include "dem/io/snapshot.h"
 
 namespace granrad {
 
@@ -37,6 +38,36 @@ Quantities of_run(const fs::path& folder) {
   derive("share_sfs_pct", "100 * h_sfs_W_m2K / h_wp_W_m2K");
   derive("share_rad_pct", "100 * h_rad_W_m2K / h_wp_W_m2K");
   return all;
+}
+
+/// Mean of one frame with the standard error of its particles; a count has none.
+Measured probe_frame(const StudyProbe& probe, const Bed& bed) {
+  const double unit = probe.in_diameters ? mean_diameter_m(bed.radius_m) : 1;
+  const double low = bed.box.min[probe.axis];
+  double n = 0, sum = 0, squares = 0;
+  for (std::size_t i = 0; i < bed.size(); ++i) {
+    const double at = bed.position_m[i][probe.axis] - low;
+    if (!bed.box.contains(bed.position_m[i]) || at < probe.from * unit || at >= probe.to * unit) continue;
+    const double value = probe.what == "count"          ? 1
+                         : probe.what == "velocity_m_s" ? -bed.velocity_m_s[i].z
+                                                        : bed.temperature_K[i];
+    n += 1, sum += value, squares += value * value;
+  }
+  if (probe.what == "count") return {n, 0};
+  if (n < 2) return {unknown, unknown};
+  return {sum / n, std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n)) / (n - 1))};
+}
+
+Measured probe_run(const StudyProbe& probe, const fs::path& folder) {
+  const auto frames = CaseFolder(folder).frames();
+  if (frames.empty()) return {unknown, unknown};
+  if (probe.last) return probe_frame(probe, read_frame(frames.back().file).bed);
+  double n = 0, sum = 0, squares = 0;
+  for (std::size_t k = frames.size() / 2; k < frames.size(); ++k) {
+    const double value = probe_frame(probe, read_frame(frames[k].file).bed).value;
+    n += 1, sum += value, squares += value * value;
+  }
+  return {sum / n, n > 1 ? std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n)) / (n - 1)) : unknown};
 }
 
 /// One quantity for each number of validation.csv, by source and time.
@@ -142,8 +173,11 @@ std::vector<StudyRow> collect(const Study& study, const fs::path& folder) {
       if (replicate->skipped) continue;
       row.records.push_back(read_case_record(place_of(folder, *replicate).record));
       row.seconds += row.records.back().seconds;
-      if (row.records.back().status == "finished")
-        replicates.push_back(of_case(*replicate, folder / replicate->name));
+      if (row.records.back().status != "finished") continue;
+      replicates.push_back(of_case(*replicate, folder / replicate->name));
+      for (const auto& probe : study.probes)
+        if (replicate->kind == StudyKind::run && (probe.group.empty() || probe.group == replicate->group))
+          replicates.back()[probe.name] = probe_run(probe, folder / replicate->name);
     }
     row.finished = static_cast<int>(replicates.size());
     if (row.finished > 0) row.quantity = averaged(replicates);

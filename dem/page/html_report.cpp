@@ -91,6 +91,17 @@ void HtmlReport::table(const std::vector<std::string>& header,
   body_ += "</tbody></table></div>\n";
 }
 
+void HtmlReport::filtered_table(const std::vector<std::string>& header,
+                                const std::vector<std::vector<std::string>>& rows,
+                                const std::vector<std::size_t>& by) {
+  has_filters_ = true;
+  std::string columns;
+  for (const auto column : by) columns += fmt::format("{}{}", columns.empty() ? "" : " ", column);
+  const auto begin = body_.size();
+  table(header, rows);
+  body_.replace(body_.find("<table>", begin), 7, fmt::format("<table data-filter='{}'>", columns));
+}
+
 void HtmlReport::chart(const Chart& chart) {
   if (!in_charts_) body_ += "<div class='charts'>\n";
   in_charts_ = has_figures_ = true;
@@ -133,6 +144,7 @@ void HtmlReport::write(const std::filesystem::path& file) const {
   if (has_figures_)
     page += fmt::format("<script>/*\n{}*/\n{}</script>\n<script>{}</script>\n", page_asset_uplot_license(),
                         page_asset_uplot_js(), page_asset_page_js());
+  if (has_filters_) page += fmt::format("<script>{}</script>\n", page_asset_filter_js());
   write_text_file(file, page + "</body>\n</html>\n");
 }
 

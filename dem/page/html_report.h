@@ -50,6 +50,9 @@ class HtmlReport {
   void verdict(const std::string& text, bool good);
   void tiles(const std::vector<Tile>& tiles);
   void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows);
+  /// A table with a list of the values of each of these columns above it, and a search over all, to show some rows.
+  void filtered_table(const std::vector<std::string>& header,
+                      const std::vector<std::vector<std::string>>& rows, const std::vector<std::size_t>& by);
   /// Charts that follow each other stand side by side where there is room.
   void chart(const Chart& chart);
   /// Charts as histograms of equal bins over the joint range, normalised to unit area.
@@ -63,7 +66,7 @@ class HtmlReport {
  private:
   void end_charts();
   std::string title_, body_, provenance_;
-  bool in_charts_ = false, has_figures_ = false;
+  bool in_charts_ = false, has_figures_ = false, has_filters_ = false;
 };
 
 }  // namespace granrad

@@ -9,5 +9,6 @@ std::string_view page_asset_uplot_css();
 std::string_view page_asset_uplot_license();
 std::string_view page_asset_page_js();
 std::string_view page_asset_page_css();
+std::string_view page_asset_filter_js();
 
 }  // namespace granrad

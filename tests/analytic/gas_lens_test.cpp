@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "dem/base/constants.h"
+#include "tests/record.h"
 #include "tests/source_dir.h"
 
 namespace granrad {
@@ -50,6 +51,8 @@ TEST(GasLens, AgreesWith40DigitQuadrature) {
 TEST(GasLens, AtContactGivesThePublishedNumbers) {
   const double s = 2.75e-8 / 4e-4;
   EXPECT_NEAR(pair_lens(0, s / 2, 1.2), 28.1515707342, 1e-10);
+  record("pair_lens", pair_lens(0, s / 2, 1.2));
+  record("wall_lens", wall_lens(0, s, 1.2));
   EXPECT_NEAR(wall_lens(0, s, 1.2), 56.2581158722, 1e-10);
 }
 

@@ -11,6 +11,7 @@
 #include "dem/base/constants.h"
 #include "raytrace/paths/path_source.h"
 #include "tests/hot_box.h"
+#include "tests/record.h"
 
 namespace granrad {
 namespace {
@@ -91,7 +92,9 @@ TEST(Heating, OfALoneBlackSphereIsTheClosedForm) {
   const double exact = exact_after_2_s();
   EXPECT_NEAR(exact, 570.4156, 5e-5);
   RadiositySource source(sphere_in_box, Closure::reciprocal);
-  EXPECT_NEAR(temperature_after_2_s(source, 0.01, Heats::midway) / exact, 1, 1e-6);
+  const double ours = temperature_after_2_s(source, 0.01, Heats::midway);
+  EXPECT_NEAR(ours / exact, 1, 1e-6);
+  record("lone_sphere_K", ours);
   EXPECT_NEAR(temperature_after_2_s(source, 0.01, Heats::at_start) / exact, 1, 1.2e-4);
 }
 

@@ -10,6 +10,7 @@
 #include "path_cases.h"
 #include "raytrace/rays/emission.h"
 #include "rectangle_factors.h"
+#include "tests/record.h"
 
 namespace granrad {
 namespace {
@@ -47,7 +48,10 @@ Case plates() {
 }
 
 TEST_P(GreyPaths, ParallelPlates) {
-  expect_heat(plates().trace(options_for(GetParam(), 200000)), 1, 24997.5306, 0.003);
+  const auto heat = plates().trace(options_for(GetParam(), 200000));
+  expect_heat(heat, 1, 24997.5306, 0.003);
+  if (GetParam() == Walks::weighted)
+    record("grey_plates", heat.heat_W[1] / 24997.5306, heat.standard_error_W[1] / 24997.5306);
 }
 
 TEST_P(GreyPaths, PlatesWithAShield) {
@@ -116,6 +120,8 @@ TEST_P(GreyPaths, SphericalCavity) {
   const auto heat = c.trace(options_for(GetParam(), 60000));
   EXPECT_NEAR(-heat.heat_W[0] / exact, 1, 4 * heat.standard_error_W[0] / exact + 1e-3);
   EXPECT_LT(heat.standard_error_W[0] / exact, 0.01);
+  if (GetParam() == Walks::weighted)
+    record("grey_cavity", -heat.heat_W[0] / exact, std::hypot(heat.standard_error_W[0] / exact, 1e-3));
   EXPECT_EQ(heat.heat_W[1], -heat.heat_W[0]) << "all of it goes to the surroundings";
 }
 

@@ -11,6 +11,7 @@
 #include "raytrace/exact.h"
 #include "raytrace/rays/ray_rows.h"
 #include "tests/enclosures.h"
+#include "tests/record.h"
 #include "tests/source_dir.h"
 
 namespace granrad {
@@ -24,6 +25,13 @@ TraceOptions rays(double n, Sampling sampling, std::uint64_t seed = 1) {
   o.sampling = sampling;
   o.seed = seed;
   return o;
+}
+
+/// For the validation book: a traced factor over the exact one, with the error of its count.
+void record_ratio(const std::string& name, const HitCounts& counts, std::size_t i, std::size_t j,
+                  double exact) {
+  const double n = static_cast<double>(counts.launched[i]), f = hits(counts, i, j) / n;
+  record(name, f / exact, std::sqrt(f * (1 - f) / n) / exact);
 }
 
 struct TwoSpheres {
@@ -44,6 +52,9 @@ TEST_P(TwoSphereFactor, EqualsQuadrature) {
     EXPECT_LT(std::abs(sigmas_off(counts, 0, 1, exact_two_sphere(r1, r2, s))), 4);
     EXPECT_LT(std::abs(sigmas_off(counts, 1, 0, exact_two_sphere(r2, r1, s))), 4);
     EXPECT_EQ(hits(counts, 0, 0), 0);
+    if (sampling == Sampling::plain && r1 == r && gap == (r2 == r ? 0 : 2))
+      record_ratio(r2 == r ? "equal_spheres_at_contact" : "unequal_spheres_apart", counts, 0, 1,
+                   exact_two_sphere(r1, r2, s));
     EXPECT_EQ(hits(counts, 0, 1) + hits(counts, 0, 2), static_cast<double>(counts.launched[0]));
   }
 }
@@ -109,6 +120,7 @@ TEST(SphereInBox, EqualsSolidAngles) {
       EXPECT_LT(std::abs(sigmas_off(counts, 0, 1 + w, f[w])), 4) << line << " wall " << w;
     }
     EXPECT_EQ(counts.leaked, 0);
+    if (rows == 0) record_ratio("sphere_and_wall", counts, 0, 4, f[3]);
   }
   EXPECT_EQ(rows, 5);
 }
@@ -124,6 +136,8 @@ TEST(EmptyBox, EqualsClosedForms) {
   EXPECT_NEAR(exact[4][5], .00501602, 1e-8);
   EXPECT_NEAR(exact[4][2], .34409017, 1e-8);
   const HitCounts counts = trace_view_factors(boxed({}, channel()), rays(1e6, Sampling::plain));
+  record_ratio("parallel_rectangles", counts, 2, 3, exact[2][3]);
+  record_ratio("perpendicular_rectangles", counts, 2, 0, exact[2][0]);
   for (std::size_t i = 0; i < 6; ++i)
     for (std::size_t j = 0; j < 6; ++j) {
       if (i == j)

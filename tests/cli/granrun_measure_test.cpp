@@ -82,7 +82,14 @@ TEST(GranrunMeasure, ChainsConductAsTheirContacts) {
                R = json.at("wall_resistance_m2K_W");
   EXPECT_NEAR(json.at("k_gas_W_mK").get<double>(), k, 1e-9 * k);
   EXPECT_NEAR(0.012 / overall, 0.012 / k + 2 * R, 1e-6 * 0.012 / overall) << "bulk and two layers in series";
+  record("chains_in_series", 0.012 / overall / (0.012 / k + 2 * R));
   EXPECT_LT(json.at("k_W_mK_error").get<double>(), 1e-6 * k) << "all columns are equal";
+  // A lid out of reach: k would be a slope that only rounding makes. Planted: not asked, k comes with exit code 0.
+  const auto apart = granrun(scratch, "measure conductivity " + (scratch.root / "chains.toml").string() +
+                                          " --between y --set 'box.size_m=[0.004, 0.015, 0.004]' -o " +
+                                          (scratch.root / "apart").string());
+  EXPECT_EQ(apart.code, 2);
+  EXPECT_NE(apart.err.find("does not reach both"), std::string::npos) << apart.err;
   const double lens = k * d / (0.2 * d / 2);  // G = k d of one chain in its square
   EXPECT_NEAR(lens, 28.15 + 0.45, 0.3) << "near the exact 28.15 of 0.8 mm, and growing slowly with d";
 }

@@ -54,6 +54,8 @@ TEST(GranrunStudy, EveryKindOfVariationBecomesOneRow) {
       "seeds = [1, 2]\n[[group.case]]\nname = \"slow\"\n"
       "[[group]]\nname = \"frozen\"\n[[group.case]]\nname = \"goes_on\"\nstart = \"Tw-700_small\"\n"
       "set = [\"dem.engine=none\", \"particles.diameter_m='0.6 mm'\"]\nunset = [\"dem.step_s\"]\n"
+      "[[probe]]\nname = \"T_at_wall\"\naxis = \"y\"\nfrom_diameters = 0\nto_diameters = 1\n"
+      "[[probe]]\nname = \"N\"\nwhat = \"count\"\naxis = \"y\"\nfrom_m = 0\nto_m = 1\n"
       "[[column]]\nname = \"double_h\"\nformula = \"2 * h_wp_W_m2K\"\n";
   const auto outcome = study.run(text);
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -76,6 +78,9 @@ TEST(GranrunStudy, EveryKindOfVariationBecomesOneRow) {
                     std::stod(row.at("share_rad_pct")),
                 100, 1e-6);
   }
+  // Of the last frame: spheres beside the hot wall are hotter than the mean, and all of the box are counted.
+  EXPECT_GT(std::stod(table[0].at("T_at_wall")), std::stod(table[0].at("final_mean_temperature_K")));
+  EXPECT_NEAR(std::stod(table[0].at("N")), std::stod(table[0].at("region_particle_count")), 3);
   EXPECT_NE(content(study.folder / "report.html").find("Every case"), std::string::npos);
 }
 
@@ -206,7 +211,7 @@ TEST(GranrunStudy, ClaimsAndFitsAreJudgedAndSweepIsItsOldName) {
       "id,quantity,class,place,claim,unit,reference,uncertainty,tolerance_pct,ours,why\n"
       "1,ratio,A,here,\"h with itself, twice\",,2,,0.1,{e/emissivity-1:h_wp_W_m2K} / {e/emissivity-1:h_wp_W_m2K} * 2,\n"
       "2,ratio,A,here,wrong,,3,,0.1,2 * {e/emissivity-1:h_wp_W_m2K} / {e/emissivity-1:h_wp_W_m2K},planted\n"
-      "3,none,P,there,no way,,1,,,,nobody knows how\n4,exponent,A,here,near 1,,1,,40,{fit rad:b},\n");
+      "3,none,P,there,no way,,1,,,,nobody knows how\n5,ratio,E,here,who knows,,3,?,,{e/emissivity-1:h_wp_W_m2K},\n4,exponent,A,here,near 1,,1,,40,{fit rad:b},\n");
   const std::string text =
       "[sweep]\nscene = \"plug.toml\"\n[[group]]\nname = \"e\"\n[[group.vary]]\nkey = \"material.emissivity\"\n"
       "values = [0.2, 0.4, 0.7, 1]\n[[fit]]\nname = \"rad\"\nx = \"material.emissivity\"\ny = \"h_rad_W_m2K\"\n"
@@ -221,6 +226,7 @@ TEST(GranrunStudy, ClaimsAndFitsAreJudgedAndSweepIsItsOldName) {
   EXPECT_NE(judged.find("1,ratio,A,here,\"h with itself, twice\",,2,0,2,0,0,agrees"), std::string::npos)
       << judged;
   EXPECT_NE(judged.find(",differs,planted"), std::string::npos) << judged;
+  EXPECT_NE(judged.find(",uncertainty unknown,"), std::string::npos) << judged;
   EXPECT_NE(judged.find("not reproducible as stated"), std::string::npos) << judged;
   const auto book = content(study.root / "book.md");
   EXPECT_NE(book.find("**differs**"), std::string::npos) << "failures stay in the book";
@@ -247,5 +253,6 @@ TEST(GranrunStudy, AStudyThatIsWrittenWrongIsRefused) {
   refused(two_cases + "[[case]]\nname = \"a\"\nstart = \"b\"\n", "needs b, which is no other case");
   refused(two_cases + "[[case]]\nname = \"a\"\nkind = \"walk\"\n", "must be one of");
   refused(two_cases + "[[vary]]\nnames = [\"a\"]\nset = [[\"b=1\"], [\"b=2\"]]\n", "names");
+  refused(two_cases + "[[probe]]\nname = \"a\"\nfrom_m = 2\nto_m = 1\n", "from < to");
   refused(two_cases + "[[case]]\nname = \"a\"\ncolour = 1\n", "unknown key 'colour'");
 }

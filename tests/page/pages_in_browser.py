@@ -33,6 +33,13 @@ addEventListener('load', () => setTimeout(() => {
       const wide = Math.min(r.right, s.right) - Math.max(r.left, s.left), high = Math.min(r.bottom, s.bottom) - Math.max(r.top, s.top);
       if (wide > 3 && high > 3) faults.push('overlap: ' + a.textContent.slice(0, 20) + ' | ' + b.textContent.slice(0, 20));
     }
+  for (const table of document.querySelectorAll('table[data-filter]')) {
+    const list = table.parentElement.previousElementSibling.querySelector('select'), column = +table.dataset.filter.split(' ')[0];
+    list.selectedIndex = 1;
+    list.onchange();
+    for (const row of table.tBodies[0].rows)
+      if (row.hidden === (row.cells[column].textContent === list.value)) { faults.push('filter'); break; }
+  }
   root.dataset.faults = JSON.stringify(faults.slice(0, 5));
 }, 300));
 </script></body>"""
@@ -61,8 +68,13 @@ def main():
         run(BIN / "granrun", "run", SOURCE / "data/scenes/static_phi007.toml", "-o", folder / "case", "--set",
             "scene.end_time_s=0.5", "--set", "output.every_s=0.02", "--set", "radiation.source=paths", "-q")
         run(BIN / "granrun", "report", folder / "case", "-q")
+        (folder / "claims.csv").write_text("id,quantity,class,place,claim,unit,reference,uncertainty,tolerance_pct,ours,why\n"
+                                           "1,h,A,there,itself,,1,,1,{a:h_wp_W_m2K} / {a:h_wp_W_m2K},\n2,h,A,there,no,,2,,1,{a:h_wp_W_m2K} / {a:h_wp_W_m2K},so\n")
+        (folder / "study.toml").write_text(f"[study]\nscene = '{SOURCE}/data/scenes/static_phi007.toml'\nset = ['scene.end_time_s=0.2', "
+                                           "'output.every_s=0.02', 'radiation.source=paths']\n[[case]]\nname = 'a'\n[claims]\nfile = 'claims.csv'\n")
+        run(BIN / "granrun", "study", folder / "study.toml", "-o", folder / "study", "-q")
         bad = 0
-        for page in [folder / "case" / "report.html"]:
+        for page in [folder / "case" / "report.html", folder / "study" / "report.html"]:
             for width in (700, 1000, 1400):
                 faults = faults_of(page, width, folder)
                 print(f"{page.name} at {width}: {faults if faults != '[]' else 'sound'}")

@@ -2,6 +2,7 @@
 //
 // Planted: the arm R in place of R - delta/2 at walls; all oblique cases see it.
 #include "dem/engine_native.h"
+#include "tests/record.h"
 #include "tests/two_body_cases.h"
 
 namespace granrad {
@@ -21,6 +22,10 @@ TEST(TwoBody, head_on_matches_liggghts) {
     EXPECT_NEAR(bed.velocity_m_s[1].x / case_end(file, 2).velocity_m_s.x, 1, speed == 0.05 ? 5e-6 : 1e-9)
         << file;
     EXPECT_NEAR(bed.velocity_m_s[1].x / speed, 0.45, 5e-4) << file;
+    if (speed == 0.2) {
+      record("head_on_speed", bed.velocity_m_s[1].x / case_end(file, 2).velocity_m_s.x);
+      record("restitution", bed.velocity_m_s[1].x / speed);
+    }
     EXPECT_EQ(bed.velocity_m_s[0].x, -bed.velocity_m_s[1].x);
     EXPECT_TRUE(bed.contacts.empty());
   }
@@ -34,6 +39,8 @@ TEST(TwoBody, oblique_impact_matches_liggghts) {
     EXPECT_NEAR(bed.velocity_m_s[0].x / want.velocity_m_s.x, 1, 1e-9) << degrees;
     EXPECT_NEAR(bed.velocity_m_s[0].z / want.velocity_m_s.z, 1, 1e-9) << degrees;
     EXPECT_NEAR(bed.angular_velocity_rad_s[0].y / want.angular_velocity_rad_s.y, 1, 1e-9) << degrees;
+    if (degrees == 45)
+      record("oblique_spin", bed.angular_velocity_rad_s[0].y / want.angular_velocity_rad_s.y);
   }
 }
 
@@ -44,6 +51,7 @@ TEST(TwoBody, sliding_sphere_ends_rolling) {
   EXPECT_NEAR(bed.velocity_m_s[0].x / want.velocity_m_s.x, 1, 1e-4);
   EXPECT_NEAR(bed.angular_velocity_rad_s[0].y / want.angular_velocity_rad_s.y, 1, 1e-4);
   EXPECT_NEAR(bed.velocity_m_s[0].x, 0.1 * 5 / 7, 2e-5);
+  record("slide_to_roll_speed_m_s", bed.velocity_m_s[0].x);
 }
 
 // Planted: the law of the first material for the pair; the arm of the first sphere for both.

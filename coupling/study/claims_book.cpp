@@ -1,0 +1,82 @@
+#include "coupling/study/claims_book.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace granrad {
+
+namespace {
+
+std::string md_cell(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '|' ? std::string("\\|") : std::string(1, c);
+  return out;
+}
+
+std::string bias_table(const std::vector<Judgement>& judged) {
+  std::string text =
+      "\n## Bias and scatter by quantity\n\nAs the FDS Validation Guide states them, from the logarithms of ours over the "
+      "reference: σ_M is the scatter of ours once that of the references, σ_E, is taken off; 0 means that the references "
+      "cannot tell. Where an uncertainty is unknown, σ_M holds it too.\n\n"
+      "| quantity | numbers | bias | σ_M | σ_E |\n|---|---|---|---|---|\n";
+  const auto percent = [](double x) { return std::isfinite(x) ? fmt::format("{:.2f} %", x) : std::string(); };
+  for (const auto& q : biases(judged))
+    text += fmt::format("| {} | {} | {:+.2f} % | {} | {} |\n", md_cell(q.quantity), q.count, q.bias_pct,
+                        percent(q.sigma_pct),
+                        std::isfinite(q.reference_pct) ? percent(q.reference_pct) : "unknown");
+  return text;
+}
+
+std::string verdicts(const std::vector<Judgement>& judged) {
+  std::map<std::string, int> count;
+  for (const auto& j : judged) ++count[j.verdict];
+  std::string text;
+  for (const auto& [verdict, n] : count) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", n, verdict);
+  return fmt::format("{} numbers: {}.\n\n", judged.size(), text);
+}
+
+}  // namespace
+
+std::string claims_book(const StudyOutcome& outcome) {
+  bool whole = true;
+  for (const auto& row : outcome.rows) whole = whole && row.status() == "finished";
+  const std::string stem = outcome.study.file.stem().string();
+  std::string text = fmt::format("# {}\n\n", outcome.study.title);
+  text += fmt::format(
+      "Written by `granrun study data/studies/{}.toml -o out/{} --book FILE` ({}) from `{}`; a second run gives the "
+      "same. {}Class: **A** exact or by quadrature, **E** experiment, **P** published computation or fit, **R** another "
+      "program. *agrees*: within the tolerance stated, or where none is stated within two standard errors of ours and "
+      "the reference together; *uncertainty unknown*: the source states none. Failures stay in the table.\n\n",
+      stem, stem, stem == "validation" ? "`./do validate`" : "`./do paper`",
+      outcome.study.claims.filename().string(),
+      whole ? "" : "**A part of the study**: numbers of cases that were not run say so. ");
+  text += verdicts(outcome.judged);
+  text +=
+      "| | quantity | case | class | ours | reference | bias | verdict |\n|---|---|---|---|---|---|---|---|\n";
+  for (const auto& j : outcome.judged)
+    text += fmt::format(
+        "| {} | {} | {} | {} | {} {} | {} | {} | {}{} |\n", j.claim.id, md_cell(j.claim.quantity),
+        md_cell(j.claim.text), j.claim.kind, with_error(j.ours), j.claim.unit,
+        std::isfinite(j.claim.reference) ? with_error({j.claim.reference, j.claim.uncertainty}) : "",
+        std::isfinite(j.difference_pct) ? fmt::format("{:+.2f} %", j.difference_pct) : "",
+        j.verdict == "differs" ? "**differs**" : j.verdict,
+        j.claim.tolerance_pct > 0 ? fmt::format(" (≤ {:g} %)", j.claim.tolerance_pct) : "");
+  text += bias_table(outcome.judged);
+  text += "\n## Notes, and the command that makes each number\n\n";
+  for (const auto& j : outcome.judged) {
+    text += fmt::format("- **{}** {} {}", j.claim.id, j.claim.place, j.claim.why);
+    std::set<std::string> told;
+    for (const auto& point : j.points)
+      if (told.insert(point).second)
+        text +=
+            fmt::format(" `granrun study data/studies/{} -o out/{} --case {}`.",
+                        outcome.study.file.filename().string(), outcome.study.file.stem().string(), point);
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace granrad
