@@ -11,12 +11,11 @@
 #include <unordered_map>
 
 #include "dem/base/error.h"
+#include "dem/mesh/winding.h"
 
 namespace granrad {
 
 namespace {
-
-using Triangle = std::array<std::int32_t, 3>;
 
 /// Points by place: those within the tolerance of an earlier one are that one.
 class Welder {
@@ -212,6 +211,7 @@ std::string MeshMending::note() const {
     parts.push_back(fmt::format("{} corners within {:.2g} m of another joined to it", welded, tolerance_m));
   if (flat > 0) parts.push_back(fmt::format("{} triangles without area left out", flat));
   if (doubled > 0) parts.push_back(fmt::format("{} triangles given twice left out", doubled));
+  if (turned > 0) parts.push_back(fmt::format("{} triangles turned to face as their neighbours", turned));
   if (split > 0) parts.push_back(fmt::format("{} triangles cut at corners on their edges", split));
   return fmt::format("{}", fmt::join(parts, ", "));
 }
@@ -233,6 +233,7 @@ std::vector<Wall> mended(const std::vector<Facets>& meshes, double scale, const 
   std::vector<std::vector<Triangle>> kept;
   for (const Facets& mesh : meshes) kept.push_back(mender.take(mesh));
   mender.cut_at_vertices(kept);
+  mending.turned = wind_alike(kept);
   return mender.walls(meshes, kept, scale);
 }
 

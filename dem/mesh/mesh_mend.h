@@ -19,6 +19,7 @@ struct MeshMending {
   std::size_t flat = 0;      ///< triangles without area, dropped
   std::size_t doubled = 0;   ///< triangles given before with the same side, dropped
   std::size_t split = 0;     ///< triangles cut where a corner of others lies on their edge
+  std::size_t turned = 0;    ///< triangles that faced the other side than their neighbours (winding.h)
   std::string note() const;  ///< "" when nothing was
 };
 
@@ -28,8 +29,8 @@ inline constexpr double weld_tolerance = 1e-5;
 
 /// Walls of the meshes, in metres: equal corners are one vertex in all of them, triangles without area and
 /// triangles given twice in one mesh are left out, and a triangle with a vertex of others on its edge is cut
-/// there, so that edges meet edges. The order of a triangle's corners is kept. Meshes that keep no triangle
-/// give no wall. Throws InputError when a corner is not finite.
+/// there, so that edges meet edges. The order of a triangle's corners is kept but where its neighbours face the other
+/// side. Meshes that keep no triangle give no wall. Throws InputError when a corner is not finite.
 std::vector<Wall> mended(const std::vector<Facets>& meshes, double scale, const std::string& file,
                          MeshMending& mending);
 

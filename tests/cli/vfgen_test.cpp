@@ -255,8 +255,8 @@ TEST_F(Vfgen, TellsHowAnStlFitsTogether) {
   // Turned to the particles, and said so: the same exchange as of the mesh that faces them.
   expect_says(traced(true, true, false), 0, "normals outward");
   expect_says(traced(true, true, false), 0, "wall walls.sides faced away from the particles and was turned");
-  expect_says(traced(false, true, false), 0, "triangles face opposite sides across 8 edges");
-  expect_says(traced(false, true, false), 0, "wall walls.ends faced away from the particles and was turned");
+  expect_says(traced(false, true, false), 0, "4 triangles turned to face as their neighbours");
+  expect_says(traced(false, true, false), 0, "12 triangles, closed, normals inward");
   EXPECT_EQ(granrad::read_view_factors(path("x.h5")).counts.leaked, 0);
 }
 
