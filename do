@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # ./do demo | test | test-long | paper [--quick] | validate [--quick] | gates | tidy | format | docs | package |
-#      bench [trace|dem|heat|case|front] [--quick]
+#      bench [trace|dem|heat|case|front] [--quick | --full]
 # Each command takes a bare Debian 12 all the way: missing packages, configuration, build, run.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
@@ -47,7 +47,7 @@ usage() {
   validate    the validation book: docs/validation.md (resumable; --quick: what is fast)
   bench       speed against error, side by side with LIGGGHTS, LAMMPS, plain Embree and dense LU;
               case: the whole moving bed of the paper beside LIGGGHTS' flow alone;
-              front: every exchange source with a ladder of rays
+              front: every exchange source with a ladder of rays (--quick: 3 min; --full: four emissivities)
   hard-cases  makes docs/hard-cases.md: every exchange source on the cases that break others
 EOF
 }
@@ -209,11 +209,12 @@ EOF
     for word in "$@"; do
       case $word in
         trace | dem | heat | case | front) which+=("$word") ;;
-        --quick) options+=(--quick) ;;
+        --quick | --full) options=("$word") ;;
         *) usage >&2; exit 2 ;;
       esac
     done
     ((${#which[@]})) || which=(trace dem heat case front)
+    [[ ${options[*]} != --full || ${which[*]} == front ]] || { echo "--full is for front" >&2; exit 2; }
     set_up
     install_missing liggghts lammps
     for name in "${which[@]}"; do

@@ -56,8 +56,9 @@ const Conductances& HeatModel::conduct(const Bed& bed, Flow& flow) {
 
 HeatModel::ParticleHeat HeatModel::draw_radiation(const Bed& bed, std::uint64_t draw) {
   const Enclosure enclosure = make_enclosure(bed, case_.flow.region);
-  return draw_radiation(bed, enclosure,
-                        radiative_state(bed, bed.temperature_K, enclosure, surroundings_K(case_)), draw);
+  RadiativeState state = radiative_state(bed, bed.temperature_K, enclosure, surroundings_K(case_));
+  if (interval_s_ > 0) add_relaxation(bed, enclosure, state);
+  return draw_radiation(bed, enclosure, state, draw);
 }
 
 HeatModel::ParticleHeat HeatModel::draw_radiation(const Bed& bed, const Enclosure& enclosure,
@@ -91,12 +92,17 @@ RadiativeState HeatModel::state_ahead(const Bed& bed, const Enclosure& enclosure
       interval_s_ > explicit_radiation_fraction * (1 + 1e-6) * radiation_time_constant_s(bed, hottest_K);
   RadiativeState state = radiative_state(
       bed, implicit ? bed.temperature_K : midway_temperatures_K(bed, interval_s_), enclosure, around_K);
-  const auto relaxation = radiative_relaxation(bed, hottest_K, interval_s_);
+  add_relaxation(bed, enclosure, state);
+  state.implicit = implicit;
+  return state;
+}
+
+void HeatModel::add_relaxation(const Bed& bed, const Enclosure& enclosure, RadiativeState& state) const {
+  const auto relaxation =
+      radiative_relaxation(bed, hottest_radiating_K(bed, enclosure, surroundings_K(case_)), interval_s_);
   state.relaxation.assign(enclosure.surface_count(), 0);
   for (std::size_t s = 0; s < enclosure.sphere_count(); ++s)
     state.relaxation[s] = relaxation[static_cast<std::size_t>(enclosure.particle[s])];
-  state.implicit = implicit;
-  return state;
 }
 
 void HeatModel::radiate(Bed& bed, double interval_s) {

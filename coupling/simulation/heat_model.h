@@ -63,6 +63,8 @@ class HeatModel {
   ParticleHeat draw_radiation(const Bed& bed, const Enclosure& enclosure, const RadiativeState& state,
                               std::uint64_t draw);
   RadiativeState state_ahead(const Bed& bed, const Enclosure& enclosure) const;
+  /// What the temperature of each particle makes of its heat until the next update (RadiativeState::relaxation).
+  void add_relaxation(const Bed& bed, const Enclosure& enclosure, RadiativeState& state) const;
   double wanted_error_W(const Bed& bed, const Enclosure& enclosure, const RadiativeState& state,
                         std::uint64_t update);
 

@@ -136,11 +136,12 @@ std::string opening_problem(const Scene& scene, const Bed& bed, const EnclosureC
         "give [surroundings] temperature_K, or close the walls");
   };
   if (now.open > few_open) return said(now, "");
-  const bool opens = std::any_of(scene.walls.begin(), scene.walls.end(),
-                                 [](const Wall& wall) { return std::isfinite(wall.opens_at_s); });
-  if (!opens) return "";
+  double last_s = -infinity;  // walls that never open have opens_at_s = infinity
+  for (const Wall& wall : scene.walls)
+    if (std::isfinite(wall.opens_at_s)) last_s = std::max(last_s, wall.opens_at_s);
+  if (!(last_s > bed.time_s)) return "";
   Bed opened = bed;
-  opened.time_s = infinity;
+  opened.time_s = last_s;
   const EnclosureCheck then = check_enclosure(make_enclosure(opened, scene.region), bed.id);
   return then.open > few_open ? said(then, " once the shutters are open") : "";
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "coupling/simulation/simulation.h"
+#include "coupling/validate/update_cost.h"
 #include "dem/base/constants.h"
 
 namespace granrad {
@@ -77,11 +78,13 @@ SourceTrack heat_frozen_bed(const Case& c, const Bed& bed, const RadiationSettin
 
   SourceTrack track;
   track.label = source_label(radiation);
+  Case moving = frozen;  // black surfaces on lines need no matrix there
+  moving.flow.engine = EngineKind::native;
+  track.seconds_per_update = update_cost(moving, bed, threads).cpu_s;
   track.rays = radiation.kind == RadiationKind::correlation && !radiation.traced_walls ? 0 : radiation.rays;
   for (double time : times_s) {
     while (simulation.bed().time_s < time * (1 - 1e-9) && !simulation.finished()) {
       simulation.advance();
-      if (simulation.tick() == 1) track.seconds_per_update = simulation.seconds().radiation;
       track.curve_time_s.push_back(simulation.bed().time_s);
       track.curve_temperature_K.push_back(
           mean_temperature_K(simulation.bed(), in_region(simulation.bed(), frozen.flow.region)));
@@ -93,13 +96,34 @@ SourceTrack heat_frozen_bed(const Case& c, const Bed& bed, const RadiationSettin
 }
 
 SourceComparison compare(const SourceInstant& source, const SourceInstant& reference) {
-  const double flux = std::abs(reference.mean_flux_W_m2);
-  std::vector<double> difference;
-  for (std::size_t i = 0; i < source.flux_W_m2.size(); ++i)
-    difference.push_back(source.flux_W_m2[i] - reference.flux_W_m2[i]);
-  return {100 * (source.mean_temperature_K / reference.mean_temperature_K - 1),
-          100 * (source.mean_flux_W_m2 / reference.mean_flux_W_m2 - 1), 100 * rms(difference) / flux,
-          100 * reference.flux_noise_W_m2 / flux};
+  const double flux = std::abs(reference.mean_flux_W_m2), unit = 100 / flux;
+  const double n = static_cast<double>(source.flux_W_m2.size());
+  double square = 0, fourth = 0;
+  for (std::size_t i = 0; i < source.flux_W_m2.size(); ++i) {
+    const double d2 = std::pow(source.flux_W_m2[i] - reference.flux_W_m2[i], 2);
+    square += d2 / n, fourth += d2 * d2 / n;
+  }
+  const bool itself = &source == &reference;
+  const double theirs = itself ? 0 : std::pow(reference.flux_noise_W_m2, 2),
+               own = std::pow(source.flux_noise_W_m2, 2);
+  SourceComparison c{};
+  c.temperature_error_pct = 100 * (source.mean_temperature_K / reference.mean_temperature_K - 1);
+  c.flux_error_pct = 100 * (source.mean_flux_W_m2 / reference.mean_flux_W_m2 - 1);
+  c.particle_flux_rms_pct = unit * std::sqrt(square);
+  c.reference_noise_pct = unit * reference.flux_noise_W_m2;
+  c.source_noise_pct = unit * source.flux_noise_W_m2;
+  if (square > 0)
+    c.rms_error_pct = unit * 0.5 * std::sqrt(std::max(0.0, fourth - square * square) / n / square);
+  c.flux_noise_pct = itself ? 0 : unit * std::sqrt((theirs + own) / n);
+  c.own_rms_pct = unit * std::sqrt(std::max(0.0, square - theirs));
+  c.bias_pct = unit * std::sqrt(std::max(0.0, square - theirs - own));
+  return c;
+}
+
+double seconds_to_reach(double goal_pct, const SourceComparison& with, double seconds_per_update) {
+  const double room2 = goal_pct * goal_pct - with.bias_pct * with.bias_pct;
+  if (!(room2 > 0)) return std::nan("");
+  return seconds_per_update * std::max(1.0, with.source_noise_pct * with.source_noise_pct / room2);
 }
 
 std::string source_label(const RadiationSettings& settings) {

@@ -24,7 +24,7 @@ struct SourceTrack {
   std::string label;
   double rays = 0;
   double seconds_per_update =
-      0;  ///< of a first update: view factors (or a tracer) made anew, as a flow needs
+      0;  ///< CPU of all threads; view factors (or a tracer) made anew, as a flow needs
   std::vector<SourceInstant> at;  ///< the instants asked for
   std::vector<double> curve_time_s, curve_temperature_K;
 };
@@ -32,9 +32,19 @@ struct SourceTrack {
 /// One source against the reference at one instant: a row of validation.csv.
 struct SourceComparison {
   double temperature_error_pct, flux_error_pct;  ///< of the means, signed
-  double particle_flux_rms_pct;  ///< rms difference over the particles, of the reference's mean flux
-  double reference_noise_pct;    ///< rms standard error of the reference's particle fluxes, likewise
+  double
+      particle_flux_rms_pct;   ///< rms difference over the particles, of the reference's mean flux, as it is
+  double reference_noise_pct;  ///< rms standard error of the reference's particle fluxes, likewise
+  double source_noise_pct;     ///< of the source's, likewise; 0: not known
+  double rms_error_pct;        ///< standard error of particle_flux_rms_pct by its scatter over the particles
+  double flux_noise_pct;       ///< standard error of flux_error_pct, by the stated errors of both
+  /// The error of the source alone, without the reference's noise: of one update, and of the mean over many updates of
+  /// a run, in which the source's own noise averages out.
+  double own_rms_pct, bias_pct;
 };
+
+/// CPU seconds that the mean over many updates takes to be within `goal_pct` of each particle's flux; nan: its bias is larger.
+double seconds_to_reach(double goal_pct, const SourceComparison& with, double seconds_per_update);
 
 /// Heats `bed` (frozen) from its present temperatures to the last of times_s with the source `radiation`;
 /// everything else as the case says. `progress` is called with the time reached.

@@ -145,13 +145,13 @@ void print_rows(const ValidatedBed& bed) {
   fmt::print("{}: {} particles, solid fraction {:.3f}; errors against {}\n", bed.name, bed.particle_count,
              bed.solid_fraction, bed.tracks.front().label);
   fmt::print("  {:<34}{:>9}{:>9}{:>10}{:>10}{:>10}{:>12}{:>12}\n", "source", "rays", "time, s", "T, K",
-             "T err, %", "q err, %", "q_i rms, %", "s/update");
+             "T err, %", "q err, %", "q_i rms, %", "CPU s");
   for (const auto& track : bed.tracks)
     for (std::size_t k = 0; k < track.at.size(); ++k) {
       const auto with = compare(track.at[k], bed.tracks.front().at[k]);
       fmt::print("  {:<34}{:>9.0f}{:>9g}{:>10.2f}{:>+10.3f}{:>+10.2f}{:>12.2f}{:>12.3g}\n", track.label,
                  track.rays, track.at[k].time_s, track.at[k].mean_temperature_K, with.temperature_error_pct,
-                 with.flux_error_pct, with.particle_flux_rms_pct, track.seconds_per_update);
+                 with.flux_error_pct, with.own_rms_pct, track.seconds_per_update);
     }
 }
 

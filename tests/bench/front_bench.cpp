@@ -40,9 +40,9 @@ std::vector<std::string> cells(const Point& p) {
           std::isfinite(p.h_pct) ? fmt::format("{:+.2f} ± {:.2f}", p.h_pct, p.h_error_pct) : ""};
 }
 
-const std::vector<std::string> header = {"source",           "rays",          "CPU s per update",
-                                         "particles rms, %", "wall heat, %",  "CPU s to 1 %",
-                                         "T(5 s), %",        "T(5 s) rms, %", "h of a flow, %"};
+const std::vector<std::string> header = {
+    "source",       "rays",         "CPU s per update", "particles rms, %", "of it geometry, %",
+    "wall heat, %", "CPU s to 1 %", "T(5 s), %",        "T(5 s) rms, %",    "h of a flow, %"};
 
 void print_table(const std::vector<Point>& points) {
   std::string rule = "|";
@@ -86,6 +86,34 @@ std::string beside_the_paper(const std::vector<Point>& points, const char* what,
                      best->of.settings.rays, error(*best), error(paper), error(paper) / error(*best));
 }
 
+/// Seconds to the error by the ladder: between rungs a power, beyond the last one as random rays; NaN: no rung.
+double seconds_to(const std::vector<Point>& points, const std::string& name, double error_pct) {
+  const Point *above = nullptr, *below = nullptr;
+  for (const auto& p : points) {
+    if (p.of.name != name) continue;
+    (p.geometry_rms_pct > error_pct ? above : below) = &p;
+    if (below) break;
+  }
+  if (above && !below) return above->cpu_s * std::pow(above->geometry_rms_pct / error_pct, 2);
+  if (!above) return below ? below->cpu_s : std::nan("");
+  const double part = std::log(above->geometry_rms_pct / error_pct) /
+                      std::log(above->geometry_rms_pct / below->geometry_rms_pct);
+  return above->cpu_s * std::pow(below->cpu_s / above->cpu_s, part);
+}
+
+/// Of the view factors alone: particle heats against those of exact ones with the same radiosities.
+std::string geometry_verdict(const FrontCase& c, const std::vector<Point>& points) {
+  constexpr double goal_pct = 0.6;
+  std::vector<std::string> parts;
+  for (const char* name : {"lines", "embree", "shading"})
+    parts.push_back(fmt::format("{} {:.2g} s", name, seconds_to(points, name, goal_pct)));
+  if (c.emissivity == 1)
+    parts.push_back(
+        fmt::format("independent rays from the particles alone {:.3g} s", c.bare_embree_seconds(goal_pct)));
+  return fmt::format("View factors good for {} % of each particle's heat: {}.", goal_pct,
+                     fmt::join(parts, ", "));
+}
+
 std::string verdict(const FrontCase& c, const std::vector<Point>& points) {
   using Error = double (*)(const Point&);
   const std::vector<std::pair<const char*, Error>> errors = {
@@ -97,8 +125,8 @@ std::string verdict(const FrontCase& c, const std::vector<Point>& points) {
       {"h of a flow", [](const Point& p) { return std::hypot(p.h_pct, p.h_error_pct); }}};
   std::vector<std::string> parts;
   for (const auto& [what, error] : errors) parts.push_back(beside_the_paper(points, what, error));
-  return fmt::format("φ = {}, ε = {}, in less than {:.3g} s an update. {}.", c.solid_fraction, c.emissivity,
-                     points.back().cpu_s, fmt::join(parts, "; "));
+  return fmt::format("φ = {}, ε = {}, in less than {:.3g} s an update. {}. {}", c.solid_fraction,
+                     c.emissivity, points.back().cpu_s, fmt::join(parts, "; "), geometry_verdict(c, points));
 }
 
 void write_rows(fmt::ostream& csv, const FrontCase& c, const std::vector<Point>& points) {

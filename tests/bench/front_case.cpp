@@ -10,6 +10,8 @@
 #include "coupling/simulation/radiation_source.h"
 #include "coupling/simulation/simulation.h"
 #include "coupling/validate/compare_sources.h"
+#include "dem/base/constants.h"
+#include "raytrace/rays/view_factors.h"
 #include "tests/source_dir.h"
 
 namespace granrad {
@@ -54,7 +56,8 @@ RadiativeState state_of(const Case& c, const Bed& bed) {
   return radiative_state(with, with.temperature_K, enclosure_of(c, with), c.flow.particle_temperature_K);
 }
 
-RadiativeHeat draw(const Case& c, const Bed& bed, RadiationSettings s, std::uint64_t seed) {
+RadiativeHeat draw(const Case& c, const Bed& bed, const Contender& contender, std::uint64_t seed) {
+  RadiationSettings s = contender.settings;
   s.seed = seed;
   Scene moving = c.flow;  // what a moving bed would use: black surfaces on lines need no matrix there
   moving.engine = EngineKind::native;
@@ -123,7 +126,7 @@ std::vector<Contender> contenders(bool few) {
   ladder("paths", RadiationKind::paths, few ? Rays{1e4, 1e5} : Rays{1e3, 1e4, 1e5, 1e6}, 1e4);
   ladder("lines", RadiationKind::lines, few ? Rays{600, 6000} : Rays{150, 600, 6000, 24000}, 600);
   ladder("embree", RadiationKind::embree, few ? Rays{300} : Rays{100, 1000, 5000}, few ? 300 : 1000);
-  ladder("shading", RadiationKind::shading, few ? Rays{1000} : Rays{300, 3000, 24000}, few ? 1000 : 3000);
+  ladder("shading", RadiationKind::shading, few ? Rays{1000} : Rays{300, 3000, 8000}, few ? 1000 : 3000);
   for (const int order : few ? std::vector<int>{1} : std::vector<int>{1, 2, 3}) {
     all.push_back({fmt::format("lines order {}", order), settings(RadiationKind::lines, 1200), false, false});
     all.back().settings.order = order;
@@ -164,8 +167,10 @@ FrontCase::FrontCase(double phi, double eps, double all_walks)
       two_(scene(true, "static")),
       bed_(Flow(six_.flow).first_bed()) {
   const double begin = cpu_seconds();
-  for (const int k : {0, 1}) half_[k] = draw(six_, bed_, settings(RadiationKind::paths, walks / 2), 9001 + k);
-  for (const int k : {0, 1}) geometry_[k] = draw(six_, bed_, settings(RadiationKind::lines, 2e5), 9003 + k);
+  for (const int k : {0, 1})
+    half_[k] = draw(six_, bed_, {"paths", settings(RadiationKind::paths, walks / 2)}, 9001 + k);
+  for (const int k : {0, 1})
+    geometry_[k] = draw(six_, bed_, {"lines", settings(RadiationKind::lines, 2e5)}, 9003 + k);
   reference_seconds = cpu_seconds() - begin;
   mean_heat_W = 0;
   for (std::size_t i = 0; i < bed_.size(); ++i)
@@ -179,6 +184,27 @@ FrontCase::FrontCase(double phi, double eps, double all_walks)
                    2 / wall_heat_W;
 }
 
+double FrontCase::bare_embree_seconds(double error_pct) const {
+  TraceOptions options;
+  options.rays_per_particle = 300;
+  options.sampling = Sampling::plain;
+  options.threads = 1;
+  const Enclosure enclosure = enclosure_of(six_, bed_);
+  const double begin = cpu_seconds();
+  const HitCounts counts = trace_view_factors(enclosure, options);
+  const double spent = cpu_seconds() - begin;
+  double rays = 0, variance = 0, mean = 0;
+  for (const auto n : counts.launched) rays += static_cast<double>(n);
+  const double n = static_cast<double>(bed_.size());
+  for (std::size_t i = 0; i < bed_.size(); ++i) {
+    const double area = 4 * pi * bed_.radius_m[i] * bed_.radius_m[i];
+    const double full = area * (emissive_power(1000) - emissive_power(six_.flow.particle_temperature_K));
+    const double f = std::clamp(0.5 * (half_[0].heat_W[i] + half_[1].heat_W[i]) / full, 0.0, 1.0);
+    variance += f * (1 - f) / n, mean += f / n;
+  }
+  return variance / std::pow(0.01 * error_pct * mean, 2) * n * spent / rays;
+}
+
 FrontCase::Point FrontCase::measure(const Contender& contender) const {
   constexpr double long_s = 3;
   const Case& c = contender.paper ? two_ : six_;
@@ -188,7 +214,7 @@ FrontCase::Point FrontCase::measure(const Contender& contender) const {
   for (const std::uint64_t seed : {1, 2, 3}) {
     if (seed == 3 && seconds[0] > long_s) break;
     const double begin = cpu_seconds();
-    draws.push_back(draw(c, bed_, contender.settings, seed));
+    draws.push_back(draw(c, bed_, contender, seed));
     seconds.push_back(cpu_seconds() - begin);
     walls.push_back(hot_walls(c, bed_, draws.back()) / wall_heat_W - 1);
   }

@@ -42,6 +42,9 @@ class FrontCase {
            temperature_rms_pct = 0;     ///< of the rise in 5 s: mean, each particle; NaN: not asked
     double h_pct = 0, h_error_pct = 0;  ///< in a flow; NaN: not asked
   };
+  /// Seconds in which independent rays from every particle, by Embree and nothing else, know its heat so well: the rate of
+  /// such rays here times the binomial law; of black surfaces.
+  double bare_embree_seconds(double error_pct) const;
   Point measure(const Contender& contender) const;
   /// T(5 s) of those that are `in_time`, against paths.
   void heat_for_5_s(std::vector<Point>& points) const;
