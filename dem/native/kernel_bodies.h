@@ -87,9 +87,12 @@ struct KernelBodies {
           S::row_multiply(S::row_take(rows.force + 8 * i), S::row_load(m.kick + m.kick_stride * i));
       const auto v = S::row_add(S::row_add(S::row_load(rows.velocity + 8 * i), push), gravity);
       S::row_store(rows.velocity + 8 * i, v);
-      if (rows.motion) S::row_narrow(rows.motion + 8 * i, v);
       too_fast |= S::row_too_fast(v, m.reference + 4 * i);
       S::row_drift(rows.position + 4 * i, v, m.half_step_s, !last);
+      if (rows.mixed) {
+        S::row_narrow(rows.mixed[i].velocity, v);
+        S::copy_position(rows.position + 4 * i, rows.mixed[i].position);
+      }
     }
     return too_fast;
   }
@@ -101,7 +104,7 @@ struct KernelBodies {
     std::int64_t found = 0;
     for (std::int64_t k = 0; k < count; k += W) {
       V d[4];
-      S::pair_positions(rows.position, i + k, j + k, d);
+      S::pair_positions([&](std::int64_t row) { return rows.position + 4 * row; }, i + k, j + k, d);
       Pairs::template nearest_image<S, periodic>(constants, d);
       V u[3], spin[3];
       S::pair_velocities(rows.velocity, i + k, j + k, u, spin);

@@ -5,13 +5,20 @@
 
 namespace granrad::native {
 
+/// What a contact in mixed precision reads of a particle, in one line of the cache: the row of its position, and that
+/// of its velocity rounded.
+struct alignas(64) MixedRow {
+  double position[4];
+  float velocity[8];
+};
+
 /// Rows of all particles, in the engine's own order. 64-byte aligned.
 struct RowView {
   double* position;     ///< [4] x, y, z at the middle of the step, reach (radius + what a change of its
                         ///< velocity may move it until the next refresh)
   double* velocity;     ///< [8] v, 0, omega, 0
   std::int64_t* force;  ///< [8] F, 0, torque, 0, in fixed point; zero between steps
-  float* motion;        ///< [8] the velocity rows rounded, for mixed precision; nullptr in double
+  MixedRow* mixed;      ///< of the same positions and velocities, for mixed precision; nullptr in double
 };
 
 /// Columns of what differs from contact to contact (dem/native/contact_columns.h).
@@ -98,11 +105,11 @@ struct Kernels {
   const char* name;
   /// Adds forces to both rows; `pair_contacts_first` to the first row only (the second has another owner).
   PairKernel pair_contacts, pair_contacts_first;
-  /// The same with the law in single precision and velocities from `RowView::motion`.
+  /// The same with the law in single precision and positions and velocities from `RowView::mixed`.
   PairKernel mixed_contacts, mixed_contacts_first;
   /// `second` numbers planes.
   WorstContact (*plane_contacts)(const RowView&, const ContactView&, const PlaneView&, const StepConstants&);
-  /// v += F dt/m + g dt, omega likewise (and `motion`), x += v dt/2, forces cleared, rows [begin, end).
+  /// v += F dt/m + g dt, omega likewise (and `mixed`), x += v dt/2, forces cleared, rows [begin, end).
   /// Unless `last`, x moves another half step, to the middle of the next one. True if a speed limit is broken
   /// (or not a number).
   bool (*move)(const RowView&, std::int64_t begin, std::int64_t end, const MoveConstants&, bool last);

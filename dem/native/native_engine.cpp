@@ -111,7 +111,7 @@ void NativeEngine::Impl::load(const Bed& bed) {
   }
   load_walls(bed);
   const auto change = transfer.load(bed, rows, 0.5 * step_s, choice.threads(), most_threads);
-  if (options.precision == Precision::mixed) rows.motion.resize(rows.velocity.size());
+  if (options.precision == Precision::mixed) rows.mixed.resize(rows.velocity.size() / 8);
   if (change == BedTransfer::Change::particles)
     model = make_model(bed, rows, *periods, gravity, step_s, options.precision, options.records_touches);
   if (change >= BedTransfer::Change::memory) lists->restart(BedTransfer::memories(bed));
@@ -140,7 +140,9 @@ std::int64_t NativeEngine::Impl::run(std::int64_t steps, bool finishes, bool& li
     const RowView view = rows.view();
     WorstContact worst;
     bool stop = false;
-    rows.round_motion(share.range.begin, share.range.end);
+    rows.fill_mixed(share.range.begin, share.range.end);
+#pragma omp master
+    rows.fill_mixed(rows.count, static_cast<std::int64_t>(rows.mixed.size()));  // the idle rows
     barrier.wait();
     for (std::int64_t k = 0; k < steps && !stop; ++k) {
       worst.include(first_contacts(view, share.cross.view(), model.constants));
@@ -296,7 +298,7 @@ EngineCounts NativeEngine::counts() const {
   c.rebuilds = impl_->lists->rebuilds, c.refreshes = impl_->lists->refreshes;
   c.list_reads = impl_->list_reads;
   const auto& r = impl_->rows;
-  const double rows = 4.0 * double(r.motion.capacity()) +
+  const double rows = 64.0 * double(r.mixed.capacity()) +
                       8.0 * double(r.position.capacity() + r.velocity.capacity() + r.force.capacity() +
                                    r.kick.capacity() + r.radius.capacity() + r.mass.capacity()) +
                       4.0 * double(3 * r.bed_index.capacity());

@@ -75,7 +75,8 @@ struct PairBodies {
     for (int h = 0; h < H; ++h) {
       const std::int64_t from = at + h * D::width;
       typename D::V d[4], sum = D::set(2 * k.radius);
-      D::pair_positions(rows.position, c.first + from, c.second + from, d);
+      D::pair_positions([&](std::int64_t i) { return S::position(rows, i); }, c.first + from, c.second + from,
+                        d);
       nearest_image<D, periodic>(k, d);
       if constexpr (varied)
         sum = D::load(column(c, BodyColumn::first_radius, from)) +
@@ -191,8 +192,7 @@ struct PairBodies {
         const std::int32_t *i = c.first + at, *j = c.second + at;
         for (int l = 0; l < W; ++l) {
           const std::int64_t ahead = j[chunk + l];
-          D::prefetch(rows.position + 4 * ahead);
-          D::prefetch(motion + 8 * ahead);
+          S::prefetch_row(rows, ahead);
           if (!first_only) D::prefetch(rows.force + 8 * ahead);
         }
         gather_positions<periodic, varied>(rows, c, constants, at, in[q]);

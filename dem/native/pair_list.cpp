@@ -84,7 +84,7 @@ void PairList::refresh(const Kernels& kernels, const RowView& rows, const StepCo
                        const MemoryTable& memories) {
   const auto found = select(kernels, rows, constants);
   padded_ = (found + widest_pack - 1) / widest_pack * widest_pack;
-  next_springs_.resize(padded_, rows.motion != nullptr), next_number_.resize(found);
+  next_springs_.resize(padded_, rows.mixed != nullptr), next_number_.resize(found);
   for (auto* column : {&first_, &second_}) column->resize(padded_ + look_ahead);
   if (fresh_) place_.assign(near_count_, -1), number_.clear();
   const auto spring_of = [&](std::int64_t k) {

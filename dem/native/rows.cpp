@@ -4,9 +4,12 @@
 
 namespace granrad::native {
 
-void Rows::round_motion(std::int64_t begin, std::int64_t end) {
-  if (motion.empty()) return;
-  for (std::int64_t k = 8 * begin; k < 8 * end; ++k) motion[k] = static_cast<float>(velocity[k]);
+void Rows::fill_mixed(std::int64_t begin, std::int64_t end) {
+  if (mixed.empty()) return;
+  for (std::int64_t i = begin; i < end; ++i) {
+    for (int k = 0; k < 4; ++k) mixed[i].position[k] = position[4 * i + k];
+    for (int k = 0; k < 8; ++k) mixed[i].velocity[k] = static_cast<float>(velocity[8 * i + k]);
+  }
 }
 
 Periods::Periods(const Bed& bed) : origin(bed.box.min) {

@@ -15,7 +15,7 @@ struct Rows {
   std::int64_t count = 0;
   AlignedVector<double> position, velocity, kick, reference;  ///< see RowView and MoveConstants
   AlignedVector<std::int64_t> force;
-  AlignedVector<float> motion;          ///< empty in double precision
+  AlignedVector<MixedRow> mixed;        ///< empty in double precision
   std::vector<std::int32_t> bed_index;  ///< row -> index in the Bed
   std::vector<std::int32_t> row_of;     ///< index in the Bed -> row
   std::vector<double> radius, mass;     ///< by row
@@ -24,10 +24,10 @@ struct Rows {
   bool uniform = true;                  ///< one radius, one material, no rolling friction
 
   RowView view() {
-    return {position.data(), velocity.data(), force.data(), motion.empty() ? nullptr : motion.data()};
+    return {position.data(), velocity.data(), force.data(), mixed.empty() ? nullptr : mixed.data()};
   }
-  /// Rounds the velocities of rows [begin, end) into `motion`, if there is one.
-  void round_motion(std::int64_t begin, std::int64_t end);
+  /// Brings `mixed` up to date in rows [begin, end), if there is one.
+  void fill_mixed(std::int64_t begin, std::int64_t end);
   Vec3 position_of(std::int64_t i) const {
     return {position[4 * i], position[4 * i + 1], position[4 * i + 2]};
   }

@@ -50,13 +50,12 @@ struct Avx2Pack : LawInDouble<Avx2Pack> {
     c[0] = _mm256_permute2f128_pd(l0, l1, 0x20), c[2] = _mm256_permute2f128_pd(l0, l1, 0x31);
     c[1] = _mm256_permute2f128_pd(h0, h1, 0x20), c[3] = _mm256_permute2f128_pd(h0, h1, 0x31);
   }
-  GRANRAD_INLINE void pair_positions(const double* rows, const std::int32_t* i, const std::int32_t* j,
-                                     V d[4]) {
+  template <class At>
+  GRANRAD_INLINE void pair_positions(const At& at, const std::int32_t* i, const std::int32_t* j, V d[4]) {
     const __m256d flip = _mm256_setr_pd(-0.0, -0.0, -0.0, 0.0);
     __m256d r[4];
     for (int l = 0; l < 4; ++l)
-      r[l] = _mm256_add_pd(_mm256_load_pd(rows + 4 * std::int64_t(i[l])),
-                           _mm256_xor_pd(flip, _mm256_load_pd(rows + 4 * std::int64_t(j[l]))));
+      r[l] = _mm256_add_pd(_mm256_load_pd(at(i[l])), _mm256_xor_pd(flip, _mm256_load_pd(at(j[l]))));
     transpose(r, d);
   }
   GRANRAD_INLINE void pair_velocities(const double* rows, const std::int32_t* i, const std::int32_t* j,
@@ -125,6 +124,9 @@ struct Avx2Pack : LawInDouble<Avx2Pack> {
   GRANRAD_INLINE Row row_load(const double* p) { return {_mm256_load_pd(p), _mm256_load_pd(p + 4)}; }
   GRANRAD_INLINE void row_store(double* p, const Row& r) {
     _mm256_store_pd(p, r.low), _mm256_store_pd(p + 4, r.high);
+  }
+  GRANRAD_INLINE void copy_position(const double* from, double* to) {
+    _mm256_store_pd(to, _mm256_load_pd(from));
   }
   GRANRAD_INLINE void row_narrow(float* p, const Row& r) {
     _mm_store_ps(p, _mm256_cvtpd_ps(r.low)), _mm_store_ps(p + 4, _mm256_cvtpd_ps(r.high));

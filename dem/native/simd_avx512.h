@@ -54,13 +54,12 @@ struct Avx512Pack : LawInDouble<Avx512Pack> {
     c[0] = _mm512_permutex2var_pd(l0, even, l1), c[2] = _mm512_permutex2var_pd(l0, odd, l1);
     c[1] = _mm512_permutex2var_pd(h0, even, h1), c[3] = _mm512_permutex2var_pd(h0, odd, h1);
   }
-  GRANRAD_INLINE void pair_positions(const double* rows, const std::int32_t* i, const std::int32_t* j,
-                                     V d[4]) {
+  template <class At>
+  GRANRAD_INLINE void pair_positions(const At& at, const std::int32_t* i, const std::int32_t* j, V d[4]) {
     const __m256d sign = _mm256_setr_pd(-1, -1, -1, 1);  // a product with +-1 is exact, so fusing it is too
     __m256d r[8];
     for (int l = 0; l < 8; ++l)
-      r[l] = _mm256_fmadd_pd(sign, _mm256_load_pd(rows + 4 * std::int64_t(j[l])),
-                             _mm256_load_pd(rows + 4 * std::int64_t(i[l])));
+      r[l] = _mm256_fmadd_pd(sign, _mm256_load_pd(at(j[l])), _mm256_load_pd(at(i[l])));
     transpose4(r, d);
   }
   GRANRAD_INLINE void pair_velocities(const double* rows, const std::int32_t* i, const std::int32_t* j,
@@ -127,6 +126,9 @@ struct Avx512Pack : LawInDouble<Avx512Pack> {
   using Row = __m512d;
   GRANRAD_INLINE Row row_load(const double* p) { return _mm512_load_pd(p); }
   GRANRAD_INLINE void row_store(double* p, Row r) { _mm512_store_pd(p, r); }
+  GRANRAD_INLINE void copy_position(const double* from, double* to) {
+    _mm256_store_pd(to, _mm256_load_pd(from));
+  }
   GRANRAD_INLINE void row_narrow(float* p, Row r) { _mm256_store_ps(p, _mm512_cvtpd_ps(r)); }
   GRANRAD_INLINE Row row_take(std::int64_t* p) {
     const Row r = _mm512_cvtepi64_pd(_mm512_load_si512(p));

@@ -29,6 +29,14 @@ struct LawInDouble {
   GRANRAD_INLINE const double* motion(const Rows& rows) {
     return rows.velocity;
   }
+  template <class Rows>
+  GRANRAD_INLINE const double* position(const Rows& rows, std::int64_t i) {
+    return rows.position + 4 * i;
+  }
+  template <class Rows>
+  GRANRAD_INLINE void prefetch_row(const Rows& rows, std::int64_t i) {
+    __builtin_prefetch(rows.position + 4 * i), __builtin_prefetch(rows.velocity + 8 * i);
+  }
   template <class Contacts>
   GRANRAD_INLINE double* const* springs(const Contacts& c) {
     return c.displacement;
@@ -45,8 +53,16 @@ struct LawInSingle {
     return excess / (sum + distance);
   }
   template <class Rows>
-  GRANRAD_INLINE const float* motion(const Rows& rows) {
-    return rows.motion;
+  GRANRAD_INLINE const auto* motion(const Rows& rows) {
+    return rows.mixed;
+  }
+  template <class Rows>
+  GRANRAD_INLINE const double* position(const Rows& rows, std::int64_t i) {
+    return rows.mixed[i].position;
+  }
+  template <class Rows>
+  GRANRAD_INLINE void prefetch_row(const Rows& rows, std::int64_t i) {
+    __builtin_prefetch(rows.mixed + i);
   }
   template <class Contacts>
   GRANRAD_INLINE float* const* springs(const Contacts& c) {
@@ -83,9 +99,9 @@ struct ScalarPack : LawInDouble<ScalarPack> {
   GRANRAD_INLINE void prefetch(const void* p) { __builtin_prefetch(p); }
 
   /// d: difference of the positions and sum of the reaches.
-  GRANRAD_INLINE void pair_positions(const double* rows, const std::int32_t* i, const std::int32_t* j,
-                                     V d[4]) {
-    const double *a = rows + 4 * std::int64_t(*i), *b = rows + 4 * std::int64_t(*j);
+  template <class At>
+  GRANRAD_INLINE void pair_positions(const At& at, const std::int32_t* i, const std::int32_t* j, V d[4]) {
+    const double *a = at(*i), *b = at(*j);
     for (int k = 0; k < 3; ++k) d[k] = a[k] - b[k];
     d[3] = a[3] + b[3];
   }
@@ -132,6 +148,9 @@ struct ScalarPack : LawInDouble<ScalarPack> {
   }
   GRANRAD_INLINE void row_store(double* p, const Row& r) {
     for (int k = 0; k < 8; ++k) p[k] = r.lane[k];
+  }
+  GRANRAD_INLINE void copy_position(const double* from, double* to) {
+    for (int k = 0; k < 4; ++k) to[k] = from[k];
   }
   GRANRAD_INLINE void row_narrow(float* p, const Row& r) {
     for (int k = 0; k < 8; ++k) p[k] = static_cast<float>(r.lane[k]);
