@@ -107,7 +107,7 @@ CaseCommand vfgen_command(const Study& study, const StudyCase& one, const fs::pa
   return command;
 }
 
-/// {folder} in a word is the folder of the case. The program is found beside the study, beside ours, or by PATH.
+/// {folder} in a word is the folder of the case, {bin} that of our programs. The program is found beside the study, beside ours, or by PATH.
 CaseCommand other_command(const Study& study, const StudyCase& one, const fs::path& folder) {
   if (one.options.empty())
     throw InputError("has no command; give options = [\"program\", \"argument\", ...]");
@@ -115,6 +115,8 @@ CaseCommand other_command(const Study& study, const StudyCase& one, const fs::pa
   for (std::string word : one.options) {
     for (std::size_t at; (at = word.find("{folder}")) != std::string::npos;)
       word.replace(at, 8, (folder / one.name).string());
+    for (std::size_t at; (at = word.find("{bin}")) != std::string::npos;)
+      word.replace(at, 5, program("granrun").parent_path().string());
     command.words.push_back(word);
   }
   auto& first = command.words.front();

@@ -59,6 +59,8 @@ struct StudyFigure {
   std::string title, text, x, x_label, y_label;
   std::vector<std::string> y, groups;  ///< columns; groups empty: all that have x
   std::vector<std::string> history;    ///< points: lines of y over time instead, of their first cases
+  std::vector<std::string>
+      profiles;  ///< points: y (temperature_K, velocity_m_s or solid_fraction) along z instead
   std::vector<std::string> particles;  ///< validated points: distributions of x over the particles instead
   std::string by;                      ///< a varied key: one line each of its values
   bool log_x = false, log_y = false;

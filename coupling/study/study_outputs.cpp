@@ -17,6 +17,8 @@ StudyFigure read_figure(TomlTable table) {
       table.string({"y_label", "of the axis", "the first y"}, figure.y.empty() ? "" : figure.y.front());
   figure.groups = table.string_list({"groups", "whose cases are shown", "all that have x"});
   figure.history = table.string_list({"history", "cases whose history is shown: y over time"});
+  figure.profiles = table.string_list(
+      {"profiles", "cases whose last frame is shown: temperature_K, velocity_m_s or solid_fraction along z"});
   figure.particles =
       table.string_list({"particles", "validated cases whose particles are shown: distributions of x"});
   figure.by = table.string({"by", "a varied key: one line for each of its values"}, "");

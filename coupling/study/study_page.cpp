@@ -7,17 +7,20 @@
 #include <map>
 #include <set>
 
+#include "coupling/results/profiles.h"
+#include "coupling/simulation/case_folder.h"
 #include "coupling/simulation/history.h"
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
 #include "dem/base/files/csv.h"
+#include "dem/io/snapshot.h"
 #include "dem/page/html_report.h"
 
 namespace granrad {
 
 namespace {
 
-constexpr int curve_points = 120;
+constexpr int curve_points = 120, profile_slices = 25;
 
 std::string of_key(const StudyRow& row, const std::string& key) {
   for (auto one = row.of->varied.rbegin(); one != row.of->varied.rend(); ++one)
@@ -93,6 +96,27 @@ void add_history(HtmlReport& page, const StudyFigure& figure, const StudyOutcome
   if (!chart.series.empty()) page.chart(chart);
 }
 
+/// Slices of the box along z, of the last frame of the first case of each point.
+void add_profiles(HtmlReport& page, const StudyFigure& figure, const StudyOutcome& outcome) {
+  Chart chart{.title = figure.title, .x_label = figure.x_label, .y_label = figure.y_label};
+  for (const auto& point : figure.profiles)
+    for (const auto& row : outcome.rows) {
+      if (row.of->point != point || row.finished == 0 || row.of->kind != StudyKind::run) continue;
+      const auto frames = CaseFolder(outcome.folder / row.of->name).frames();
+      if (frames.empty()) continue;
+      const Bed bed = read_frame(frames.back().file).bed;
+      const Profile slices = profile({bed}, bed.box, 2, profile_slices);
+      for (const auto& name : figure.y)
+        chart.series.push_back({.label = point,
+                                .x = slices.position_m,
+                                .y = name == "velocity_m_s"     ? slices.velocity_m_s
+                                     : name == "solid_fraction" ? slices.solid_fraction
+                                                                : slices.temperature_K,
+                                .error = {}});
+    }
+  if (!chart.series.empty()) page.chart(chart);
+}
+
 /// Distributions over the particles at the last instant of a validation, by source.
 void add_particles(HtmlReport& page, const StudyFigure& figure, const StudyOutcome& outcome) {
   for (const auto& point : figure.particles)
@@ -109,6 +133,7 @@ void add_particles(HtmlReport& page, const StudyFigure& figure, const StudyOutco
 
 void add_figure(HtmlReport& page, const StudyFigure& figure, const StudyOutcome& outcome) {
   if (!figure.history.empty()) return add_history(page, figure, outcome);
+  if (!figure.profiles.empty()) return add_profiles(page, figure, outcome);
   if (!figure.particles.empty()) return add_particles(page, figure, outcome);
   Chart chart = empty_chart(figure);
   for (const auto& row : outcome.rows) {
