@@ -187,9 +187,11 @@ EOF
       build granrun vfgen
       say "the paper beside ours"
       code=0
-      "$build/bin/granrun" study data/studies/li_2024.toml -o "$out" --book "$out/paper.md" "${quick[@]}" || code=$?
+      book=$root/docs/paper.md
+      ((${#quick[@]})) && book=$out/paper.md
+      "$build/bin/granrun" study data/studies/li_2024.toml -o "$out" --book "$book" "${quick[@]}" || code=$?
       [[ ! -f $out/report.html ]] || cp "$out/report.html" "$out/paper.html"
-      say "page: $out/paper.html, numbers: $out/claims.csv"
+      say "page: $out/paper.html, book: $book, numbers: $out/claims.csv"
     else
       build granrun vfgen test_analytic_{extinction,view_factors,paths,heating,gas_lens} test_cli_granrun_measure \
         test_physics_{two_body,bulk_flow}
