@@ -155,8 +155,8 @@ case ${1:-} in
     ;;
   fuzz)
     set_up
-    build granrun
-    "$root/tests/judge/judge.py" "$build/bin/granrun" --count "${2:-100}" --first "${3:-1}" \
+    build granrun judge_runner
+    "$root/tests/judge/judge.py" "$build/tests/judge_runner" "$build/bin/granrun" --count "${2:-100}" --first "${3:-1}" \
       --jobs "$(nproc)" --keep "$build/judge"
     ;;
   demo)

@@ -37,6 +37,8 @@ granrad_cli_test(granrun_replay granrad_granrun)
 granrad_cli_test(granrun_engine_change granrad_granrun granrad_liggghts)
 
 # A few random scenes; ./do fuzz runs as many as asked for.
-add_test(NAME judge.short COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/judge/judge.py $<TARGET_FILE:granrun> --count 8
-  --keep ${PROJECT_BINARY_DIR}/judge)
+add_executable(judge_runner judge/judge_runner.cpp)
+target_link_libraries(judge_runner PRIVATE granrad_simulation nlohmann_json::nlohmann_json)
+add_test(NAME judge.short COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/judge/judge.py $<TARGET_FILE:judge_runner>
+  $<TARGET_FILE:granrun> --count 40 --keep ${PROJECT_BINARY_DIR}/judge)
 set_tests_properties(judge.short PROPERTIES LABELS cli TIMEOUT 300)

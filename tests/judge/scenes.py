@@ -5,10 +5,13 @@ import os
 import random
 
 FACES = ("x_min", "x_max", "y_min", "y_max", "z_min", "z_max")
-SOURCES = ("none", "paths", "embree", "lines")
+SOURCES = ("none", "paths", "embree", "lines", "shading", "correlation")
 ALUMINA = {"density_kg_m3": 3984.0, "specific_heat_J_kgK": 755.0, "conductivity_W_mK": 33.0,
            "youngs_modulus_Pa": 5e6, "real_youngs_modulus_Pa": 414e9, "poisson_ratio": 0.23,
            "restitution": 0.45, "friction": 0.4, "emissivity": 1.0}
+
+
+TABLE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../data/correlations/granrad_hard_spheres.toml")
 
 
 def toml(value):
@@ -44,45 +47,123 @@ def generate(seed):
     """One scene; the same seed gives the same scene."""
     r = random.Random(seed)
     d = 10 ** r.uniform(-4, -2.3)
-    frozen = r.random() < 0.5
+    frozen = r.random() < 0.6
     feed = "file" if frozen else r.choices(["file", "plug", "hopper"], [6, 2, 2])[0]
-    size = [d * r.uniform(2.5, 9) for _ in range(3)]
+    size = [d * r.uniform(2.5, 7) for _ in range(3)]
     if feed == "plug":
         size[2] = d * r.uniform(8, 16)
     if feed == "hopper":
         size[2] = d * r.uniform(12, 20)
     low = [0.0] * 3 if r.random() < 0.6 else [r.uniform(-1, 1) for _ in range(3)]
-    source = r.choices(SOURCES, [2, 5, 2, 2])[0]
     periodic = [a for a in ("xyz" if feed == "file" else "xy") if r.random() < 0.2]
+    source = r.choices(SOURCES, [3, 5, 2, 2, 0, 0] if periodic else [3, 5, 2, 2, 1, 1])[0]
     isothermal = r.random() < 0.15
     first_K = r.choice([300.0, r.uniform(200, 1500)])
     scene = {"seed": seed, "frozen": frozen, "diameter": d, "low": low, "size": size, "periodic": periodic,
              "isothermal": isothermal, "particle_K": first_K, "source": source, "feed": None, "wall_style": "box",
-             "gravity": [0.0, 0.0, 0.0], "materials": [dict(ALUMINA)], "gas": None, "particles": [], "remove": []}
+             "gravity": [0.0, 0.0, 0.0], "materials": [dict(ALUMINA)], "gas": None, "particles": [], "remove": [],
+             "plates": [], "engine": "none" if frozen else "native", "dem": {}, "surroundings_K": None}
     material(r, scene)
     walls(r, scene)
     if feed == "file":
+        plates(r, scene)
         particles(r, scene)
     else:
         scene["feed"] = inflow(r, scene, feed)
     if not frozen and feed != "plug":
         scene["gravity"] = r.choice([[0.0, 0.0, 0.0], [0.0, 0.0, -9.81], [1.0, -2.0, -9.0]])
+    if not frozen:
+        motion(r, scene)
     if r.random() < 0.5:
         scene["gas"] = r.choice([{}, {"conductivity_W_mK": r.uniform(.01, .5), "lens_radius_ratio": r.uniform(1.05, 1.9),
                                       "minimum_gap_m": 10 ** r.uniform(-9, -7)}])
+    steps(r, scene)
+    return scene
+
+
+def steps(r, scene):
+    frozen, source = scene["frozen"], scene["source"]
     every = 10 ** r.uniform(-3.6, -2) if frozen else 10 ** r.uniform(-4, -3)
-    scene["every"], scene["rows"] = every, r.randrange(3, 9)
+    if not frozen:  # so many steps that a scene takes no longer than others
+        every = min(every, 300 * scene["diameter"] * math.sqrt(1e-3 / 1))
+    scene["every"], scene["rows"] = every, r.randrange(3, 7)
     scene["conduction"] = {"solid": r.random() < 0.8, "modulus_exponent": r.choice([0.2, 1 / 3])}
-    scene["rays"] = {"none": 0, "paths": r.choice([2000, 20000]), "embree": 400, "lines": 2000}[source]
+    scene["rays"] = {"none": 0, "paths": r.choice([2000, 10000]), "embree": 400, "lines": 2000, "shading": 400,
+                     "correlation": 0}[source]
     scene["ray_seed"] = r.randrange(1000)
+    scene["radiation_every"] = r.choice([every, every, every / 2, 2 * every, "auto"])
     if not scene["gas"] and not scene["conduction"]["solid"] and source == "none" and frozen:
         scene["conduction"]["solid"] = True
-    return scene
+
+
+def motion(r, scene):
+    """What only moving beds have."""
+    if not scene["periodic"] and not scene["plates"]:
+        scene["wall_style"] = r.choice(["box", "box", "polygons", "halves", "meshes"])
+    if r.random() < 0.1:
+        scene["dem"]["precision"] = "mixed"
+    if r.random() < 0.05 and not scene["feed"]:
+        scene["engine"] = "liggghts"
+    if scene["feed"]:
+        return
+    faces = [f for f in scene["walls"] if scene["walls"][f].get("contact", True)]
+    if faces and r.random() < 0.2:
+        face = r.choice(faces)
+        speed = [r.uniform(-.1, .1) for _ in range(3)]
+        speed["xyz".index(face[0])] = 0.0
+        scene["walls"][face]["velocity_m_s"] = speed
+    if "z_min" in faces and r.random() < 0.2:  # the floor is open to particles; what falls through is taken out
+        scene["walls"]["z_min"]["contact"] = False
+        scene["remove"] = [{"below_m": {"axis": "z", "value": scene["low"][2] - r.choice([0.1, 1]) * scene["diameter"]}}]
+    elif r.random() < 0.1:
+        high = [l + s for l, s in zip(scene["low"], scene["size"])]
+        high[0] -= r.uniform(.3, .9) * scene["size"][0]
+        scene["remove"] = [{"min_m": list(scene["low"]), "max_m": high}]
+
+
+def plates(r, scene):
+    """A thin plate in the bed, or a patch on a wall, as rectangles across an axis."""
+    kind = r.choices(["none", "plate", "patch"], [7, 1, 1])[0]
+    if kind == "none" or scene["periodic"]:
+        return
+    axis = r.randrange(3)
+    low, high = list(scene["low"]), [l + s for l, s in zip(scene["low"], scene["size"])]
+    size = scene["size"]
+    a, b = [k for k in range(3) if k != axis]
+    for k in (a, b):
+        low[k], high[k] = low[k] + r.uniform(.1, .3) * size[k], high[k] - r.uniform(.1, .3) * size[k]
+    plate = wall_values(r, scene, r.choice(["isothermal", "adiabatic"]))
+    if kind == "plate":
+        low[axis] = high[axis] = scene["low"][axis] + r.uniform(.3, .7) * size[axis]
+        plate["two_sided"] = True
+        inwards = 1
+    else:
+        inwards = r.choice([-1, 1])
+        low[axis] = high[axis] = scene["low"][axis] + (0 if inwards > 0 else size[axis])
+    scene["plates"] = [{"axis": axis, "inwards": inwards, "low": low, "high": high, "wall": plate}]
+
+
+def rectangle(plate):
+    """Corners, counter-clockwise about +axis when inwards > 0, else about -axis."""
+    axis = plate["axis"]
+    a, b = (axis + 1) % 3, (axis + 2) % 3
+    points = []
+    for i, j in ((0, 0), (1, 0), (1, 1), (0, 1)):
+        p = list(plate["low"])
+        p[a] = plate["high"][a] if i else plate["low"][a]
+        p[b] = plate["high"][b] if j else plate["low"][b]
+        points.append(p)
+    return points if plate["inwards"] > 0 else points[::-1]
+
+
+def far_from(plate, place, radius):
+    apart = [max(l - x, 0.0, x - h) for l, x, h in zip(plate["low"], place, plate["high"])]
+    return math.sqrt(sum(v * v for v in apart)) > radius * 1.001
 
 
 def material(r, scene):
     m = scene["materials"][0]
-    m["emissivity"] = r.choice([1.0, 1.0, r.uniform(.05, 1), 0.1])
+    m["emissivity"] = r.choice([1.0, 1.0, 1.0, r.uniform(.05, 1), r.uniform(.05, 1), 0.1, 0.0])
     m["restitution"] = r.choice([.45, .1, 1.0, r.uniform(.1, 1)])
     m["friction"] = r.choice([0.0, 0.4, r.random()])
     m["conductivity_W_mK"] = r.choice([33.0, 0.2, 400.0])
@@ -97,21 +178,25 @@ def walls(r, scene):
     for face in FACES:
         if face[0] in scene["periodic"]:
             continue
-        role = r.choice(["isothermal", "adiabatic", "open"] if scene["source"] != "none" else ["isothermal", "adiabatic"])
-        wall = {"role": role}
-        if role != "adiabatic":
-            wall["temperature_K"] = scene["particle_K"] if scene["isothermal"] else r.choice([1000.0, r.uniform(100, 2000)])
-        if role != "open" and r.random() < 0.5:
-            wall["emissivity"] = r.choice([1.0, .1, r.uniform(.05, 1)])
-        scene["walls"][face] = wall
+        roles = ["isothermal", "adiabatic", "open"] if scene["source"] != "none" else ["isothermal", "adiabatic"]
+        scene["walls"][face] = wall_values(r, scene, r.choice(roles))
+
+
+def wall_values(r, scene, role):
+    wall = {"role": role}
+    if role != "adiabatic":
+        wall["temperature_K"] = scene["particle_K"] if scene["isothermal"] else r.choice([1000.0, r.uniform(100, 2000)])
+    if role != "open" and r.random() < 0.5:
+        wall["emissivity"] = r.choice([1.0, .1, r.uniform(.05, 1), 0.0])
+    return wall
 
 
 def particles(r, scene):
     d, low, size = scene["diameter"], scene["low"], scene["size"]
-    ratio = r.choice([1, 1, 1.5, 3])
-    wanted = r.choice([1, 2, 3, 8, 20, 40, 60])
+    ratio = 1 if scene["source"] == "shading" else r.choice([1, 1, 1.5, 3, 10])
+    wanted = r.choice([1, 2, 3, 8, 8, 20, 40])
     placed = []
-    for _ in range(4000):
+    for _ in range(1000):
         if len(placed) == wanted:
             break
         radius = d / 2 * ratio ** r.uniform(-1, 0)
@@ -121,6 +206,8 @@ def particles(r, scene):
             place = touching(r, scene, place, radius, placed)
             if place is None:
                 continue
+        if not all(far_from(plate, place, radius) for plate in scene["plates"] if plate["wall"].get("two_sided")):
+            continue
         if any(distance(scene, place, p["place"]) < (radius + p["radius"]) * 0.9994 for p in placed):
             continue
         placed.append({"place": place, "radius": radius, "material": r.randrange(len(scene["materials"])),
@@ -208,11 +295,21 @@ def write(scene, folder):
         box["walls"] = False
     table("[box]", box)
     walls_of(scene, folder, table)
-    table("[dem]", {"engine": "none" if scene["frozen"] else "native"})
+    for plate in scene["plates"]:
+        table("[[polygon]]", dict(plate["wall"], name="plate", vertices_m=rectangle(plate)))
+    for where in scene["remove"]:
+        table("[[remove]]", where)
+    if scene["surroundings_K"]:
+        table("[surroundings]", {"temperature_K": scene["surroundings_K"]})
+    table("[dem]", dict(scene["dem"], engine=scene["engine"]))
     table("[conduction]", scene["conduction"])
     if scene["source"] != "none":
-        table("[radiation]", {"source": scene["source"], "rays": scene["rays"], "every_s": scene["every"],
-                              "seed": scene["ray_seed"]})
+        radiation = {"source": scene["source"], "every_s": scene["radiation_every"], "seed": scene["ray_seed"]}
+        if scene["source"] == "correlation":
+            radiation["table"] = TABLE
+        else:
+            radiation["rays"] = scene["rays"]
+        table("[radiation]", radiation)
     table("[output]", {"every_s": scene["every"], "frames_every_s": scene["every"] * scene["rows"]})
     path = os.path.join(folder, "scene.toml")
     with open(path, "w") as out:
@@ -234,6 +331,8 @@ def walls_of(scene, folder, table):
         order.reverse()
     for face in order:
         wall = scene["walls"][face]
+        if scene["surroundings_K"] and wall["role"] == "open":
+            continue
         if scene["wall_style"] == "box":
             table("[walls.%s]" % face, wall)
         elif scene["wall_style"] == "polygons":

@@ -16,13 +16,23 @@ def moved(scene):
     other["low"] = [a + b for a, b in zip(scene["low"], shift)]
     for p in other["particles"]:
         p["place"] = [a + b for a, b in zip(p["place"], shift)]
+    for plate in other["plates"]:
+        for end in ("low", "high"):
+            plate[end] = [a + b for a, b in zip(plate[end], shift)]
     return "moved", other, 1, same_walls()
 
 
 def mirrored(scene):
     other = copy.deepcopy(scene)
+    middle = scene["low"][0] + scene["size"][0] / 2
     for p in other["particles"]:
-        p["place"][0] = 2 * scene["low"][0] + scene["size"][0] - p["place"][0]
+        p["place"][0] = 2 * middle - p["place"][0]
+        p["v"][0] = -p["v"][0]
+    other["gravity"][0] = -scene["gravity"][0]
+    for plate in other["plates"]:
+        plate["low"][0], plate["high"][0] = 2 * middle - plate["high"][0], 2 * middle - plate["low"][0]
+        if plate["axis"] == 0:
+            plate["inwards"] = -plate["inwards"]
     walls = same_walls()
     walls["x_min"], walls["x_max"] = "x_max", "x_min"
     other["walls"] = {walls[face]: wall for face, wall in scene["walls"].items()}
@@ -35,7 +45,11 @@ def turned(scene):
     turn = lambda v: [v[2], v[0], v[1]]
     other["low"], other["size"] = turn(scene["low"]), turn(scene["size"])
     for p in other["particles"]:
-        p["place"] = turn(p["place"])
+        p["place"], p["v"] = turn(p["place"]), turn(p["v"])
+    other["gravity"] = turn(scene["gravity"])
+    for plate in other["plates"]:
+        plate["low"], plate["high"] = turn(plate["low"]), turn(plate["high"])
+        plate["axis"] = (plate["axis"] + 1) % 3
     follows = {"x": "y", "y": "z", "z": "x"}
     walls = {face: follows[face[0]] + face[1:] for face in FACES}
     other["walls"] = {walls[face]: wall for face, wall in scene["walls"].items()}
@@ -51,6 +65,8 @@ def larger(scene):
     other["diameter"] *= 10
     for p in other["particles"]:
         p["place"], p["radius"] = [10 * v for v in p["place"]], 10 * p["radius"]
+    for plate in other["plates"]:
+        plate["low"], plate["high"] = [10 * v for v in plate["low"]], [10 * v for v in plate["high"]]
     for m in other["materials"]:
         m["specific_heat_J_kgK"] /= 10
         m["conductivity_W_mK"] *= 10
@@ -82,23 +98,53 @@ def reordered(scene):
     return "reordered", changed(scene, wall_style="polygons", reordered=True), 1, same_walls()
 
 
+def renumbered(scene):
+    """The particles in another order: compared by their numbers in the first scene."""
+    return "renumbered", changed(scene, particles=scene["particles"][::-1]), 1, same_walls()
+
+
+def opened(scene):
+    """Open faces left away: rays meet the surroundings instead."""
+    warm = {w["temperature_K"] for w in scene["walls"].values() if w["role"] == "open"}
+    return "opened", changed(scene, wall_style="polygons", surroundings_K=warm.pop()), 1, same_walls()
+
+
 def by(source, rays):
     def variant(scene):
         return source, changed(scene, source=source, rays=rays), 1, same_walls()
     return variant
 
 
+def can_be_opened(scene):
+    warm = {w["temperature_K"] for w in scene["walls"].values() if w["role"] == "open"}
+    return len(warm) == 1 and scene["source"] not in ("lines", "correlation")
+
+
+def few_bodies(scene):
+    """Moving beds are chaotic, but not two or three spheres within a few collisions."""
+    return 0 < len(scene["particles"]) <= 2 and scene["engine"] == "native" and scene["source"] == "none" \
+        and not scene["remove"] and scene["dem"].get("precision") is None \
+        and not any("velocity_m_s" in wall for wall in scene["walls"].values())
+
+
 def variants(scene):
     """Those that this scene allows. Moving beds are chaotic: only frozen ones have the same heats."""
+    if few_bodies(scene):
+        return [make(scene) for make in (moved, mirrored, turned)]
     if not scene["frozen"] or scene["feed"] or not scene["particles"]:
         return []
-    all_of_them = [moved, mirrored, turned, larger]
+    all_of_them = [moved, mirrored, turned, larger, renumbered]
     if scene["periodic"]:
         all_of_them.append(doubled)
     else:
         all_of_them += [as_walls("polygons"), reordered, as_walls("halves")]
         if scene["source"] != "lines":
             all_of_them.append(as_walls("meshes"))
-    if scene["source"] != "none":
-        all_of_them += [by(s, n) for s, n in (("paths", 20000), ("embree", 1000), ("lines", 4000)) if s != scene["source"]]
+    if can_be_opened(scene):
+        all_of_them.append(opened)
+    if scene["source"] not in ("none", "correlation"):
+        others = [("paths", 10000), ("embree", 1000), ("lines", 4000)]
+        if len({p["radius"] for p in scene["particles"]}) == 1 and not scene["periodic"]:
+            others.append(("shading", 1000))
+        all_of_them += [by(s, n) for s, n in others if s != scene["source"]]
     return [make(scene) for make in all_of_them]
