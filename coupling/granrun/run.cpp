@@ -8,6 +8,7 @@
 
 #include "coupling/granrun/case_notes.h"
 #include "coupling/granrun/run_record.h"
+#include "coupling/granrun/time_loop.h"
 #include "coupling/results/results.h"
 #include "coupling/simulation/case_folder.h"
 #include "coupling/simulation/case_lock.h"
@@ -21,12 +22,6 @@
 namespace granrad {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-void say(const RunOptions& options, const std::string& text) {
-  if (!options.quiet()) fmt::print(stderr, "{}\n", text);
-}
 
 /// Goes on from the last frame that can be read and leads on; a damaged one is reported, and the frame before it
 /// taken. False when the case has no frame yet. Throws IoError when it has some and none serves: its history is
@@ -70,103 +65,6 @@ void begin(Simulation& simulation, const Case& c, const std::filesystem::path& w
     say(options, "note: " + note);
 }
 
-/// What long radiation intervals cost in accuracy.
-void remark_on_implicit_radiation(const Simulation& simulation, const RunOptions& options) {
-  const auto& totals = simulation.heat().radiation();
-  if (totals.implicit_updates == 0) return;
-  say(options,
-      fmt::format("note: {} of {} radiation updates were longer than 0.1 of the radiative time constant and "
-                  "taken implicitly, to first order; radiation.every_s = \"auto\" follows the time constant",
-                  totals.implicit_updates, totals.updates));
-  if (totals.limited_share > 0)
-    say(options,
-        fmt::format("note: up to {:.2g} % of the heats of an update were noise beyond every temperature and "
-                    "moved back; more rays make it less",
-                    100 * totals.limited_share));
-}
-
-std::string progress_detail(const Simulation& simulation, const HistoryRow& row) {
-  std::string text = fmt::format("t = {:.4g} s  N = {}", simulation.bed().time_s, simulation.bed().size());
-  if (row["mean_temperature_K"] > 0) text += fmt::format("  T = {:.1f} K", row["mean_temperature_K"]);
-  if (std::isfinite(row["h_wp_W_m2K"])) text += fmt::format("  h = {:.1f} W/m2K", row["h_wp_W_m2K"]);
-  return text;
-}
-
-void save(const Simulation& simulation, const CaseFolder& folder) {
-  on_first_rank([&] {
-    simulation.write_checkpoint(folder.frame(simulation.bed().step));
-    folder.add_to_series(simulation.bed().step, simulation.bed().time_s);
-  });
-}
-
-/// 0 to go on, else the exit code to stop with, the same on every rank.
-int stop_requested(const RunOptions& options, Clock::time_point start) {
-  const double elapsed = std::chrono::duration<double>(Clock::now() - start).count();
-  const int own = interrupt_signal()              ? 128 + interrupt_signal()
-                  : elapsed >= options.walltime_s ? exit_wall_time
-                                                  : 0;
-  return static_cast<int>(largest_over_ranks(own));
-}
-
-/// One tick. What stops it names the way on: the frames before it are whole.
-void advance(Simulation& simulation) {
-  const double from_s = simulation.bed().time_s;
-  try {
-    simulation.advance();
-  } catch (const NumericalError& error) {
-    throw NumericalError(fmt::format(
-        "at {:g} s: {}\n  the last frame leads on with --resume --set KEY=VALUE (dem.step_s, radiation.every_s, "
-        "conduction.every_steps); particles that fall out of the scene are taken out by [[remove]]",
-        from_s, error.what()));
-  }
-}
-
-/// The time loop, from where the simulation stands to its end or until it must stop.
-int follow(Simulation& simulation, const Case& c, const CaseFolder& folder, const RunOptions& options,
-           Clock::time_point start) {
-  std::optional<HistoryWriter> history;
-  std::optional<WallHistoryWriter> walls;
-  on_first_rank([&] {
-    history.emplace(folder.history(), simulation.last_row_s());
-    walls.emplace(folder.wall_history(), simulation.last_row_s());
-    if (!history->note().empty()) fmt::print(stderr, "note: {}\n", history->note());
-  });
-  if (simulation.bed().step == 0) save(simulation, folder);
-  const auto& plan = simulation.plan();
-  Progress progress(c.flow.name, plan.time_s(plan.end_tick), options.quiet());
-  HistoryRow row;
-  while (!simulation.finished()) {
-    if (plan.cuts(simulation.tick() + 1)) save(simulation, folder);  // where a longer run goes on
-    advance(simulation);
-    if (plan.row_at(simulation.tick())) {
-      const Record record = simulation.record();
-      row = record.row;
-      on_first_rank([&] {
-        history->append(row);
-        walls->append(record.walls);
-      });
-      if (options.verbose())
-        fmt::print(stderr, "{}  threads {} of {}\n", progress_detail(simulation, row),
-                   simulation.flow_threads().used, simulation.flow_threads().most);
-    }
-    const int stop = stop_requested(options, start);
-    const bool asked = largest_over_ranks(take_checkpoint_request()) != 0;
-    if (stop || asked || plan.frame_at(simulation.tick())) save(simulation, folder);
-    progress.update(simulation.bed().time_s, progress_detail(simulation, row));
-    if (stop && !simulation.finished()) {
-      say(options,
-          fmt::format("stopped at {:g} s, checkpoint saved; go on with --resume", simulation.bed().time_s));
-      return stop;
-    }
-  }
-  progress.finish();
-  remark_on_implicit_radiation(simulation, options);
-  if (const auto threads = simulation.flow_threads(); threads.most > 1)
-    say(options, fmt::format("threads {} of {} for the flow ({} particles)", threads.used, threads.most,
-                             simulation.bed().size()));
-  return exit_ok;
-}
-
 /// Whether a case is done as it stands: its record says so, for this end, and its history reaches it.
 bool is_done(const std::filesystem::path& where, const Case& c) {
   if (!CaseFolder::holds_case(where) || !is_finished(where)) return false;
@@ -181,7 +79,7 @@ bool is_done(const std::filesystem::path& where, const Case& c) {
 }  // namespace
 
 int run_case(const Case& c, const std::filesystem::path& where, const RunOptions& options) {
-  const auto start = Clock::now();
+  const auto start = std::chrono::steady_clock::now();
   install_signal_handlers();
   CaseFolder::check(where, c, options.resume);
   std::optional<CaseLock> lock;

@@ -17,9 +17,9 @@ namespace fs = std::filesystem;
 namespace {
 
 /// What `--resume` may find changed; the rest decides what the frames of a case mean.
-const char* const free_to_change[] = {"scene.end_time_s",       "dem.step_s",     "radiation.every_s",
-                                      "conduction.every_steps", "output.every_s", "output.frames_every_s",
-                                      "output.average_from_s"};
+const char* const free_to_change[] = {"scene.end_time_s",       "dem.step_s",           "radiation.every_s",
+                                      "conduction.every_steps", "radiation.rays",       "output.every_s",
+                                      "output.frames_every_s",  "output.average_from_s"};
 
 /// The name of the file below inputs/, numbered where another file has it already.
 std::string place_for(const InputFile& wanted, const std::vector<InputFile>& others) {

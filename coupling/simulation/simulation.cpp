@@ -44,10 +44,6 @@ class ThreadsOfFlow {
   int before_;
 };
 
-std::int64_t identity(const Case& c) {
-  return static_cast<std::int64_t>(text_hash(c.identity));
-}
-
 /// Ranks that trace a part of the rays each must see the same bed.
 void require_same_bed_on_ranks(const Bed& bed) {
   if (rank_count() == 1) return;
@@ -71,6 +67,7 @@ std::string outside_note(const Scene& scene, const Bed& bed) {
 
 Simulation::Simulation(const Case& c, int threads)
     : case_(c), flow_(c.flow, threads), heat_(c, threads), recorder_(c) {
+  identity_ = static_cast<std::int64_t>(text_hash(c.identity));
   flow_.record_touches(c.heat.conduction.solid && !c.heat.conduction.rough);
 }
 
@@ -93,7 +90,7 @@ void Simulation::make_plan() {
 }
 
 bool Simulation::resume(const Snapshot& frame) {
-  if (saved_integer(saved_block(frame, "case"), "identity") != identity(case_))
+  if (saved_integer(saved_block(frame, "case"), "identity") != identity_)
     throw InputError(advised(fmt::format("{} (a frame of another scene)", frame.origin),
                              "[particles] file = this frame starts a new case from it"));
   const auto plan = TimePlan::restored(saved_block(frame, "plan"), case_.flow.end_time_s);
@@ -131,16 +128,21 @@ void Simulation::advance() {
   heat_.advance(bed_, plan_.heat_step_s(tick_));
 }
 
+void Simulation::keep(Snapshot& into) const {
+  into.bed = bed_;
+  into.state["case"].integers["identity"] = {identity_};
+  into.state["plan"] = plan_.save();
+  into.state["feed"] = flow_.save();
+  into.state["radiation"] = heat_.save();
+  into.state["ledger"] = heat_.save_ledger();
+  into.state["walls"] = heat_.save_walls();
+  into.state["recorder"] = recorder_.save();
+}
+
 void Simulation::write_checkpoint(const std::filesystem::path& file) const {
-  StateBlocks state;
-  state["case"].integers["identity"] = {identity(case_)};
-  state["plan"] = plan_.save();
-  state["feed"] = flow_.save();
-  state["radiation"] = heat_.save();
-  state["ledger"] = heat_.save_ledger();
-  state["walls"] = heat_.save_walls();
-  state["recorder"] = recorder_.save();
-  write_frame(file, bed_, state);
+  Snapshot now;
+  keep(now);
+  write_frame(file, now.bed, now.state);
 }
 
 }  // namespace granrad

@@ -30,6 +30,8 @@ class Simulation {
   void advance();
   Record record() { return recorder_.record(bed_, flow_, heat_); }
   void write_checkpoint(const std::filesystem::path& file) const;
+  /// What a frame of this instant would hold; memory in `into` is used again.
+  void keep(Snapshot& into) const;
 
   bool finished() const { return bed_.step >= plan_.end_step; }
   /// When the row before the present interval was made.
@@ -37,6 +39,7 @@ class Simulation {
   std::int64_t tick() const { return tick_; }
   const Bed& bed() const { return bed_; }
   const TimePlan& plan() const { return plan_; }
+  bool moves() const { return flow_.moves(); }
   EngineThreads flow_threads() const { return flow_.threads(); }
   const StepLimits& limits() const { return limits_; }
   double conduction_limit_s() const { return conduction_limit_s_; }
@@ -53,6 +56,7 @@ class Simulation {
   void make_plan();
 
   const Case& case_;
+  std::int64_t identity_ = 0;  ///< of the case, in its frames
   Flow flow_;
   HeatModel heat_;
   Recorder recorder_;

@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::uint64_t drop_stream = 0x686f'7070'0000;
 constexpr double default_start_fraction = 0.5, loosest_start_fraction = 0.05;
+constexpr double thinnest_layer = 0.02;  ///< of a full layer; fewer spheres are set down one by one
+constexpr double most_at_once = 1e8;     ///< spheres; a kilobyte each
 
 }  // namespace
 
@@ -35,6 +37,11 @@ HopperFeed::HopperFeed(const Scene& scene)
         advised(fmt::format("feed.fill_region = {:g} x {:g} x {:g} m (smaller than two particle diameters)",
                             size.x, size.y, size.z),
                 "give the inside of the chute above the bed"));
+  const double room = size.x * size.y * size.z / sphere_volume(radius_);
+  if (settings_.rate_1_s == 0 && std::min(room, static_cast<double>(settings_.particle_count)) > most_at_once)
+    throw InputError(advised(fmt::format("feed.particle_count = {} (more than {:g} spheres at once)",
+                                         settings_.particle_count, most_at_once),
+                             "give fewer, or pour them at a rate"));
   if (settings_.solid_fraction == 0) settings_.solid_fraction = default_start_fraction;
 }
 
@@ -59,6 +66,7 @@ bool HopperFeed::pack(Bed& bed, double solid_fraction) const {
   Box block = settings_.fill_region;
   const double section = block.size().x * block.size().y;
   const double wanted = settings_.particle_count * sphere_volume(radius_) / (solid_fraction * section);
+  if (wanted < thinnest_layer * 2 * radius_) return false;
   block.max.z = std::clamp(block.min.z + wanted, block.min.z + 2 * slack * radius_, block.max.z);
   auto radii = equal_radii(block, solid_fraction, radius_);
   radii.resize(std::min<std::size_t>(radii.size(), settings_.particle_count), radius_);
@@ -82,7 +90,8 @@ std::int64_t HopperFeed::due(const Bed& bed, const FeedTotals& totals) const {
   const double per_second =
       poured ? settings_.rate_1_s : settings_.mass_flow_kg_s / (density_ * sphere_volume(radius_));
   // Rounded up by a billionth: a time that is a whole number of intervals may lie just below it.
-  const auto allowed = static_cast<std::int64_t>(per_second * (bed.time_s - start_s_) * (1 + 1e-9));
+  const double by_now = per_second * (bed.time_s - start_s_) * (1 + 1e-9);
+  const auto allowed = static_cast<std::int64_t>(std::min(by_now, 9e15));
   return std::min(missing, std::max<std::int64_t>(0, allowed - totals.inserted));
 }
 

@@ -135,6 +135,14 @@ std::int64_t largest_over_ranks(std::int64_t value) {
   return *std::max_element(all.begin(), all.end());
 }
 
+bool interrupted_alone() {
+  return rank_count() == 1 && interrupt_signal() != 0;
+}
+
+void stop_if_interrupted_alone() {
+  if (rank_count() == 1) stop_if_interrupted();
+}
+
 void on_first_rank(const std::function<void()>& action) {
   if (!functions) return action();
   largest_over_ranks(0);  // the others are done with what `action` may change

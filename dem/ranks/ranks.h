@@ -37,6 +37,11 @@ RankPart part_of_rank(std::int64_t count, int of = rank());
 void sum_over_ranks(std::span<std::int64_t> values);
 std::int64_t largest_over_ranks(std::int64_t value);
 
+/// Whether a signal asks to stop and no other rank would wait in vain for this one: long loops may end in their middle
+/// then. Several ranks stop together after a step.
+bool interrupted_alone();
+void stop_if_interrupted_alone();  ///< throws Error
+
 /// Runs on the first rank while the others wait; what it throws is thrown on all, with its exit code.
 void on_first_rank(const std::function<void()>& action);
 

@@ -34,7 +34,7 @@ void add_effort(CLI::App& sub, TraceText& text, TraceSettings& trace) {
       ->capture_default_str();
   sub.add_option("--memory", trace.memory_limit_bytes,
                  "largest use, such as 512MiB; beyond, rare pairs are thinned out at random (default 4GiB)")
-      ->transform(CLI::AsSizeValue(true));
+      ->transform(memory_size());
   sub.add_option("--seed", trace.seed, "of the random numbers")->check(seed_number())->capture_default_str();
   sub.add_option("--threads", trace.threads, "0: all; results do not depend on it")
       ->check(CLI::Range(0, 4096));

@@ -15,6 +15,9 @@ CLI::Validator number_in(double low, double high);
 /// A whole number >= 0 that std::int64_t holds; CLI11 would let -1 wrap around.
 CLI::Validator seed_number();
 
+/// A size such as 4GiB or 512MB, made bytes; at least 1 byte, at most 2^50. CLI11 lets -1 and 1e20 wrap around.
+CLI::Validator memory_size();
+
 /// Subcommands with many options.
 void add_trace(CLI::App& app, Body& body);
 void add_fit(CLI::App& app, Body& body);

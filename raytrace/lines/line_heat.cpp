@@ -55,6 +55,7 @@ std::vector<Sums> sum_over_lines(const LineScene& scene, const std::vector<std::
       std::fill(own.begin(), own.end(), 0);
 #pragma omp for schedule(dynamic) nowait
       for (std::int64_t k = mine.begin; k < mine.end; ++k) {
+        if (interrupted_alone()) continue;
         pass.aim(line_frame(options.seed, replicate, static_cast<int>(k), directions));
         if (scene.is_periodic())
           receive_pairs(pass, power, own.data());
@@ -65,6 +66,7 @@ std::vector<Sums> sum_over_lines(const LineScene& scene, const std::vector<std::
       for (std::size_t i = 0; i < own.size(); ++i) total[replicate][i] += own[i];
     }
   }
+  stop_if_interrupted_alone();
   for (Sums& sums : total) {
     sum_over_ranks(sums);
     if (!scene.is_periodic()) sums = scene.by_surface(sums);

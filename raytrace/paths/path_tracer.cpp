@@ -61,6 +61,7 @@ BatchTallies run_batches(const PathWalker& walker, int threads) {
     };
 #pragma omp for schedule(dynamic, 1) nowait
     for (std::int64_t p = mine.begin; p < mine.end; ++p) {
+      if (interrupted_alone()) continue;
       const Piece& piece = pieces[static_cast<std::size_t>(p)];
       hand_over(piece.batch);
       const std::int64_t first = first_walk(walks, piece.batch);
@@ -70,6 +71,7 @@ BatchTallies run_batches(const PathWalker& walker, int threads) {
     }
     hand_over(-1);
   }
+  stop_if_interrupted_alone();
   return batches;
 }
 

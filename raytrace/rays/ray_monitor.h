@@ -18,8 +18,8 @@ class TraceStopped : public NumericalError {
   TraceStopped() : NumericalError("tracing stopped before its end: nothing was kept") {}
 };
 
-/// Counts the work that several threads have done and asks the watch whether to go on. Of several ranks each counts its
-/// own part.
+/// Counts the work that several threads have done and asks the watch whether to go on; a signal to the program stops
+/// it as well. Of several ranks each counts its own part.
 class RayMonitor {
  public:
   /// `total` of all ranks.

@@ -9,6 +9,7 @@
 
 #include "dem/bed/cell_grid.h"
 #include "dem/bed/wall_shape.h"
+#include "dem/ranks/ranks.h"
 #include "raytrace/embree/embree_tracer.h"
 #include "raytrace/facets.h"
 #include "raytrace/shading/beam_lines.h"
@@ -214,7 +215,9 @@ std::vector<VisiblePair> visible_pairs(const Enclosure& enclosure, int threads) 
   const auto spheres = static_cast<std::int32_t>(enclosure.sphere_count());
   std::vector<std::vector<VisiblePair>> rows(enclosure.sphere_count());
 #pragma omp parallel for schedule(dynamic, 16) num_threads(threads > 0 ? threads : omp_get_max_threads())
-  for (std::int32_t i = 0; i < spheres; ++i) shading.pairs_of(i, rows[static_cast<std::size_t>(i)]);
+  for (std::int32_t i = 0; i < spheres; ++i)
+    if (!interrupted_alone()) shading.pairs_of(i, rows[static_cast<std::size_t>(i)]);
+  stop_if_interrupted_alone();
   std::vector<VisiblePair> pairs;
   for (const auto& row : rows) pairs.insert(pairs.end(), row.begin(), row.end());
   return pairs;
