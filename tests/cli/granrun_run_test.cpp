@@ -171,7 +171,8 @@ TEST(GranrunRun, RefusesFoldersThatAreNotItsOwn) {
   const auto again = granrun(scratch, "run " + scene + " -o " + ours);
   EXPECT_EQ(again.code, 2);
   EXPECT_NE(again.err.find("--resume"), std::string::npos) << again.err;
-  const auto other = granrun(scratch, "run " + scene + " -o " + ours + " --resume --set radiation.rays=600");
+  const auto other =
+      granrun(scratch, "run " + scene + " -o " + ours + " --resume --set material.friction=0.11");
   EXPECT_EQ(other.code, 2);
   EXPECT_NE(other.err.find("scene differs"), std::string::npos) << other.err;
 }
