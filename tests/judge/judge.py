@@ -81,7 +81,8 @@ class Judge:
         oracles.books(case)
         oracles.bounds(case)
         oracles.count(case)
-        again = self.run(scene, first, frame=" " + os.path.join(folder, "frame.hdf"))
+        threads = 2 if scene["seed"] % 10 == 0 else 1
+        again = self.run(scene, first, frame=" %s %d" % (os.path.join(folder, "frame.hdf"), threads))
         if again is None:
             raise Finding("resume", "refused")
         oracles.resumed(case, again)

@@ -1,12 +1,13 @@
 // Runs scenes one after another in one process, for judge.py: a thousand small scenes a minute instead of dozens.
 //
-//   stdin, a line a scene:  SCENE.toml          run it to its end
-//                           SCENE.toml FRAME    likewise, but in the middle written to FRAME and read back
+//   stdin, a line a scene:  SCENE.toml                  run it to its end
+//                           SCENE.toml FRAME THREADS    likewise, but in the middle written to FRAME and read back,
+//                                                       then with so many threads
 //   stdout, a line a scene: JSON: {"code": 0, "rows": ..., "walls": ..., ...} or {"code": 2, "error": ...}
 //
 // The rows are those of history.csv and walls.csv, the bounds are over every heat step. What a process adds (folders,
 // locks, exit codes) judge.py asks the program itself, for some scenes.
-#include <fmt/core.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -65,7 +66,8 @@ std::unique_ptr<Simulation> read_back(const Simulation& simulation, const Case& 
   return again;
 }
 
-Json run(const std::string& scene, const std::string& frame) {
+Json run(const std::string& scene, const std::string& frame, int threads) {
+  omp_set_num_threads(1);
   const Case c = read_case(scene, {});
   auto simulation = std::make_unique<Simulation>(c, 1);
   simulation->start();
@@ -78,8 +80,10 @@ Json run(const std::string& scene, const std::string& frame) {
     simulation->advance();
     extremes.look_at(simulation->bed());
     if (simulation->plan().row_at(simulation->tick())) add_record(result, simulation->record());
-    if (!frame.empty() && simulation->tick() == middle)
-      simulation = read_back(*simulation, c, frame, simulation->flow_threads().most == 1 ? 2 : 1);
+    if (!frame.empty() && simulation->tick() == middle) {
+      omp_set_num_threads(threads);
+      simulation = read_back(*simulation, c, frame, threads);
+    }
   }
   const Bed& bed = simulation->bed();
   result["temperatures"] = bed.temperature_K;
@@ -91,9 +95,9 @@ Json run(const std::string& scene, const std::string& frame) {
   return result;
 }
 
-Json answer(const std::string& scene, const std::string& frame) {
+Json answer(const std::string& scene, const std::string& frame, int threads) {
   try {
-    return run(scene, frame);
+    return run(scene, frame, threads);
   } catch (const Error& error) {
     return {{"code", static_cast<int>(error.exit_code())}, {"error", error.what()}};
   } catch (const std::exception& error) {
@@ -108,8 +112,10 @@ int main() {
   for (std::string line; std::getline(std::cin, line);) {
     std::istringstream words(line);
     std::string scene, frame;
-    words >> scene >> frame;
-    std::cout << granrad::answer(scene, frame).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)
+    int threads = 1;
+    words >> scene >> frame >> threads;
+    std::cout << granrad::answer(scene, frame, threads)
+                     .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)
               << std::endl;
   }
 }
