@@ -12,6 +12,7 @@
 
 #include "dem/base/error.h"
 #include "dem/base/plugin.h"
+#include "dem/base/program.h"
 #include "dem/ranks/rank_functions.h"
 
 namespace granrad {
