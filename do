@@ -47,7 +47,8 @@ usage() {
   validate    the validation book: docs/validation.md (resumable; --quick: what is fast)
   bench       speed against error, side by side with LIGGGHTS, LAMMPS, plain Embree and dense LU;
               case: the whole moving bed of the paper beside LIGGGHTS' flow alone;
-              front: every exchange source with a ladder of rays (--quick: 3 min; --full: four emissivities)
+              front: every exchange source with a ladder of rays (--quick: 3 min; --full: four emissivities);
+              scale: the parts of a run on one and two ranks, and a model of more
   hard-cases  makes docs/hard-cases.md: every exchange source on the cases that break others
 EOF
 }
@@ -210,16 +211,22 @@ EOF
     which=() options=()
     for word in "$@"; do
       case $word in
-        trace | dem | heat | case | front) which+=("$word") ;;
+        trace | dem | heat | case | front | scale) which+=("$word") ;;
         --quick | --full) options=("$word") ;;
         *) usage >&2; exit 2 ;;
       esac
     done
-    ((${#which[@]})) || which=(trace dem heat case front)
+    ((${#which[@]})) || which=(trace dem heat case front scale)
     [[ ${options[*]} != --full || ${which[*]} == front ]] || { echo "--full is for front" >&2; exit 2; }
     set_up
     install_missing liggghts lammps
     for name in "${which[@]}"; do
+      if [[ $name == scale ]]; then
+        build granrun
+        say "bench scale"
+        python3 "$root/tests/bench/scale.py" "${options[@]}" "$build/bin/granrun" "$build/bench"
+        continue
+      fi
       build "${name}_bench"
       mkdir -p "$build/bench"
       say "bench $name"

@@ -10,12 +10,15 @@ namespace granrad {
 
 /// The flow solver LIGGGHTS 3.8 (Debian's libliggghts, GPL 2) behind the contract of the native engine: the
 /// field's reference code on the same scene, to check the native engine or to trust its flow. The two share
-/// no line. One process, one thread; optional in a build.
+/// no line. One thread a rank; optional in a build.
 ///
 /// Model: `pair_style gran model hertz tangential history [rolling_friction cdt]`, the law of
 /// dem/native/hertz_mindlin.h with the same mixing of materials; velocity Verlet (`nve/sphere`), of first order in
 /// the step once contacts dissipate; standing walls as triangle meshes (`mesh/surface`); gravity, periodic
 /// boundaries, spheres of any radii and materials.
+///
+/// Under mpirun (dem/ranks) all ranks move the spheres together: each takes those in its part of the domain and gives all
+/// ranks what became of them. Results on different numbers of ranks differ by the order of sums.
 ///
 /// A function of the Bed: each advance hands every sphere and spring over anew in the order of the ids and
 /// takes them back, so feeds may change the Bed at will. A resumed run continues bit for bit where it is cut

@@ -23,20 +23,21 @@ double seconds_of(const std::string& walltime) {
   return 3600.0 * hours + 60.0 * minutes + seconds;
 }
 
-/// As a shell would read it.
 std::string command_line(int argc, char** argv) {
   std::string line;
-  for (int k = 0; k < argc; ++k) {
-    const std::string word = argv[k];
-    const bool plain = word.find_first_of(" '\"\\$[]{}*?;&|<>()#!~`\t\n") == std::string::npos;
-    std::string inside;
-    for (char c : word) inside += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    line += fmt::format("{}{}", k ? " " : "", plain && !word.empty() ? word : fmt::format("'{}'", inside));
-  }
+  for (int k = 0; k < argc; ++k) line += (k ? " " : "") + in_quotes(argv[k]);
   return line;
 }
 
 }  // namespace
+
+std::string in_quotes(const std::string& word) {
+  const bool plain = word.find_first_of(" '\"\\$[]{}*?;&|<>()#!~`\t\n") == std::string::npos;
+  if (plain && !word.empty()) return word;
+  std::string inside;
+  for (char c : word) inside += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return fmt::format("'{}'", inside);
+}
 
 void add_common(CLI::App* command, Arguments& a) {
   command->add_option("--threads", a.options.threads, "threads; results do not depend on it")

@@ -22,6 +22,9 @@ void add_scene(CLI::App* command, Arguments& a);        ///< SCENE and what edit
 void add_output(CLI::App* command, Arguments& a);
 void add_stopping(CLI::App* command, Arguments& a);
 
+/// A word as a shell would read it.
+std::string in_quotes(const std::string& word);
+
 /// Puts the options in force. Throws InputError.
 void apply(Arguments& a, int argc, char** argv);
 

@@ -8,10 +8,12 @@
 
 #include "coupling/granrun/case_notes.h"
 #include "coupling/granrun/forecast.h"
+#include "coupling/granrun/scaling.h"
 #include "coupling/heat/wall_coefficients.h"
 #include "coupling/simulation/radiation_source.h"
 #include "coupling/simulation/simulation.h"
 #include "dem/base/error.h"
+#include "dem/base/files/text_file.h"
 #include "dem/bed/solid_fraction.h"
 
 namespace granrad {
@@ -157,7 +159,8 @@ std::string duration(double seconds) {
                        : fmt::format("{:.3g} days", seconds / 86400);
 }
 
-void print_forecast(const Case& c, Simulation& simulation, const RunOptions& options) {
+void print_forecast(const Case& c, Simulation& simulation, const RunOptions& options,
+                    const CheckOptions& asked) {
   const Bed bed = simulation.bed();
   const Forecast cost = forecast(c, simulation, options.threads);
   fmt::print("\nforecast for this machine{}\n", cost.measured
@@ -168,6 +171,13 @@ void print_forecast(const Case& c, Simulation& simulation, const RunOptions& opt
              duration(cost.total_s()));
   fmt::print("  memory about {:.0f} MB, on disk {:.0f} frames of {:.2g} MB\n", cost.memory_bytes / 1e6,
              cost.frames, cost.frame_bytes / 1e6);
+  if (asked.ranks > 1) fmt::print("{}", scaling_text(c, cost, asked.ranks));
+  if (!asked.slurm.empty()) {
+    const auto name = std::filesystem::path(asked.slurm).stem().string();
+    write_text_file(asked.slurm,
+                    slurm_script(c, cost, asked.ranks, cost.threads,
+                                 fmt::format("granrun run {} -o {}_case", asked.scene_line, name)));
+  }
   const auto sources = source_costs(c, bed, options.threads);
   if (sources.empty()) return;
   std::string list;
@@ -178,11 +188,11 @@ void print_forecast(const Case& c, Simulation& simulation, const RunOptions& opt
 
 }  // namespace
 
-int check_case(const Case& c, const RunOptions& options, bool defaults) {
+int check_case(const Case& c, const RunOptions& options, const CheckOptions& asked) {
   Simulation simulation(c, options.threads);
   simulation.start();
   if (!options.quiet())
-    fmt::print("# the scene in force\n{}\n", defaults ? c.text_with_defaults : c.effective_text);
+    fmt::print("# the scene in force\n{}\n", asked.defaults ? c.text_with_defaults : c.effective_text);
   Verdict verdict;
   judge_flow(c, verdict);
   judge_conduction(c, verdict);
@@ -199,7 +209,7 @@ int check_case(const Case& c, const RunOptions& options, bool defaults) {
   for (const auto& note : case_notes(c, simulation.bed())) fmt::print("  note: {}\n", note);
   fmt::print("\n{} particles at time 0, solid fraction {:.4f} in the region\n", simulation.bed().size(),
              solid_fraction(simulation.bed(), c.flow.region));
-  print_forecast(c, simulation, options);
+  print_forecast(c, simulation, options, asked);
   return exit_ok;
 }
 

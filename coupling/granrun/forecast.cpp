@@ -1,5 +1,7 @@
 #include "coupling/granrun/forecast.h"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -7,6 +9,7 @@
 #include "coupling/simulation/heat_model.h"
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
+#include "raytrace/paths/path_tracer.h"
 
 namespace granrad {
 
@@ -50,15 +53,33 @@ Case with_few_rays(const Case& c, const Bed& bed, double& times_more) {
   return trial;
 }
 
-double seconds_of_an_update(const Case& c, const Bed& bed, int threads) {
-  if (c.heat.radiation.kind == RadiationKind::none || bed.size() == 0) return 0;
-  double times_more = 1;
-  const Case trial = with_few_rays(c, bed, times_more);
-  HeatModel heat(trial, threads);
+/// Seconds of one radiation update: in all, and of that what its rays do not change.
+struct UpdateSeconds {
+  double all = 0, repeated = 0;
+};
+
+double seconds_of_a_draw(const Case& c, const Bed& bed, int threads) {
+  HeatModel heat(c, threads);
   heat.start(bed);
   const double start = now_s();
   heat.draw_radiation(bed, 0);
-  return (now_s() - start) * times_more;
+  return now_s() - start;
+}
+
+UpdateSeconds seconds_of_an_update(const Case& c, const Bed& bed, int threads) {
+  const RadiationSettings& radiation = c.heat.radiation;
+  if (radiation.kind == RadiationKind::none || bed.size() == 0) return {};
+  double times_more = 1;
+  Case trial = with_few_rays(c, bed, times_more);
+  const double few_s = seconds_of_a_draw(trial, bed, threads);
+  const bool paths = radiation.kind == RadiationKind::paths;
+  const bool shared = paths || radiation.kind == RadiationKind::embree ||
+                      (radiation.kind == RadiationKind::lines && radiation.order == 0);
+  if (!shared || radiation.rays <= 0) return {few_s * times_more, few_s * times_more};
+  const double few_rays = trial.heat.radiation.rays;
+  trial.heat.radiation.rays = std::min(few_rays, paths ? 2.0 * path_batches : 1.0);
+  const double least_s = std::min(few_s, seconds_of_a_draw(trial, bed, threads));
+  return {least_s + (few_s - least_s) * times_more, least_s};
 }
 
 }  // namespace
@@ -69,12 +90,17 @@ Forecast forecast(const Case& c, Simulation& simulation, int threads) {
   const Bed bed = simulation.bed();
   const double ticks = static_cast<double>(plan.end_tick), count = mean_count(c, bed);
   const bool moves = c.flow.engine != EngineKind::none;
-  if (plan.ticks_per_radiation > 0)
-    cost.radiation_s = seconds_of_an_update(c, bed, threads) *
-                       (moves ? ticks / static_cast<double>(plan.ticks_per_radiation) : 1) *
-                       (bed.size() > 0 ? count / static_cast<double>(bed.size()) : 1);
-  if (!moves && c.heat.radiation.kind == RadiationKind::paths)
-    cost.radiation_s *= ticks / static_cast<double>(std::max<std::int64_t>(1, plan.ticks_per_radiation));
+  cost.heat_steps = ticks, cost.mean_count = count;
+  cost.threads = threads > 0 ? threads : omp_get_max_threads();
+  if (plan.ticks_per_radiation > 0) {
+    const bool anew =
+        moves || c.heat.radiation.kind == RadiationKind::paths;  // a frozen bed keeps its view factors
+    cost.radiation_updates = anew ? ticks / static_cast<double>(plan.ticks_per_radiation) : 1;
+    const double times =
+        cost.radiation_updates * (bed.size() > 0 ? count / static_cast<double>(bed.size()) : 1);
+    const UpdateSeconds update = seconds_of_an_update(c, bed, threads);
+    cost.radiation_s = update.all * times, cost.radiation_repeated_s = update.repeated * times;
+  }
   const double expected_tick_s = static_cast<double>(bed.size()) *
                                  static_cast<double>(moves ? plan.steps_per_tick : 1) /
                                  usual_particle_steps_s;

@@ -10,7 +10,10 @@ namespace granrad {
 /// What a run will cost on this machine.
 struct Forecast {
   double flow_s = 0, conduction_s = 0, radiation_s = 0,
-         output_s = 0;  ///< wall-clock seconds of the whole run
+         output_s = 0;              ///< wall-clock seconds of the whole run
+  double radiation_repeated_s = 0;  ///< of radiation_s: geometry, and what is not shared by ranks
+  double heat_steps = 0, radiation_updates = 0, mean_count = 0;
+  int threads = 1;
   double frame_bytes = 0, frames = 0;
   double memory_bytes = 0;
   bool measured = false;  ///< false: the flow by a usual speed, because the bed is empty or too large to try

@@ -79,11 +79,18 @@ void add_check(CLI::App& app, Arguments& a, Body& body) {
   auto* check =
       app.add_subcommand("check", "validate a scene; print limits, what is modelled and what is not");
   add_scene(check, a);
-  const auto defaults = std::make_shared<bool>(false);
-  check->add_flag("--defaults", *defaults, "print the scene with every default in force, as comments");
-  check->callback([&, defaults] {
-    body = [&, defaults] {
-      return check_case(read_case(a.scene, a.overrides, a.removed), a.options, *defaults);
+  const auto asked = std::make_shared<CheckOptions>();
+  check->add_flag("--defaults", asked->defaults, "print the scene with every default in force, as comments");
+  check->add_option("--ranks", asked->ranks, "forecast for so many ranks, one a node; see mpirun")
+      ->check(CLI::Range(1, 1024));
+  check->add_option("--slurm", asked->slurm, "write a job of Slurm for these ranks and threads")
+      ->type_name("FILE.sh");
+  check->callback([&, asked] {
+    body = [&, asked] {
+      asked->scene_line = in_quotes(a.scene);
+      for (const auto& one : a.overrides) asked->scene_line += " --set " + in_quotes(one);
+      for (const auto& one : a.removed) asked->scene_line += " --unset " + in_quotes(one);
+      return check_case(read_case(a.scene, a.overrides, a.removed), a.options, *asked);
     };
   });
 }
@@ -246,7 +253,7 @@ int granrun(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? exit_ok : exit_bad_input;
   }
-  if (const auto name = app.get_subcommands().front()->get_name(); name != "run" && name != "check")
+  if (const auto name = app.get_subcommands().front()->get_name(); name != "run")
     refuse_several_ranks("granrun " + name);
   apply(a, argc, argv);
   const int code = body();

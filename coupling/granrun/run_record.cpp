@@ -80,7 +80,11 @@ nlohmann::ordered_json process(const RunOptions& options, const nlohmann::json& 
 }
 
 nlohmann::ordered_json as_json(const PartSeconds& seconds) {
-  return {{"flow", seconds.flow}, {"conduction", seconds.conduction}, {"radiation", seconds.radiation}};
+  return {{"flow", seconds.flow},
+          {"conduction", seconds.conduction},
+          {"radiation", seconds.radiation},
+          {"output", seconds.output},
+          {"between_ranks", seconds_between_ranks()}};
 }
 
 }  // namespace

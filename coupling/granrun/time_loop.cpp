@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "dem/base/error.h"
@@ -22,8 +23,16 @@ std::string progress_detail(const Simulation& simulation, const HistoryRow& row)
   return text;
 }
 
-void save(const Simulation& simulation, const CaseFolder& folder) {
-  on_first_rank([&] {
+/// Runs on the first rank what writes into the case, and counts its time.
+void write_out(Simulation& simulation, const std::function<void()>& action) {
+  const auto begin = std::chrono::steady_clock::now();
+  on_first_rank(action);
+  simulation.add_output_seconds(
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+}
+
+void save(Simulation& simulation, const CaseFolder& folder) {
+  write_out(simulation, [&] {
     simulation.write_checkpoint(folder.frame(simulation.bed().step));
     folder.add_to_series(simulation.bed().step, simulation.bed().time_s);
   });
@@ -131,7 +140,7 @@ int follow(Simulation& simulation, const Case& c, const CaseFolder& folder, cons
     if (plan.row_at(simulation.tick())) {
       const Record record = simulation.record();
       row = record.row;
-      on_first_rank([&] {
+      write_out(simulation, [&] {
         history->append(row);
         walls->append(record.walls);
       });

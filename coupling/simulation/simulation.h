@@ -48,6 +48,7 @@ class Simulation {
   HeatModel::ParticleHeat draw_radiation(std::uint64_t draw) { return heat_.draw_radiation(bed_, draw); }
   FeedTotals fed() const { return flow_.totals(); }
   const PartSeconds& seconds() const { return seconds_; }
+  void add_output_seconds(double seconds) { seconds_.output += seconds; }
   /// What start() found that is probably a mistake, or was done to the walls.
   const std::vector<std::string>& notes() const { return notes_; }
 

@@ -5,6 +5,7 @@
 #define OMPI_SKIP_MPICXX
 #include <liggghts/atom.h>
 #include <liggghts/atom_vec.h>
+#include <liggghts/comm.h>
 #include <liggghts/domain.h>
 #include <liggghts/error.h>
 #include <liggghts/fix.h>
@@ -21,6 +22,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <limits>
 
 #include "dem/base/error.h"
 #include "dem/liggghts/stl_file.h"
@@ -72,22 +74,54 @@ using LAMMPS_NS::Fix;
 using LAMMPS_NS::FixContactHistory;
 using LAMMPS_NS::FixMeshSurface;
 
-/// MPI from the first session to the end of the process.
+/// MPI from the first session to the end of the process. Where the program has joined its ranks, MPI runs already and
+/// all ranks move the spheres together; else this process is alone.
 class Mpi {
  public:
-  static void start() { static const Mpi mpi; }
+  static const Mpi& started() {
+    static const Mpi mpi;
+    return mpi;
+  }
+  MPI_Comm comm() const { return comm_; }
+  int count() const { return count_; }
+
+  /// The values of all ranks in their order, at every rank.
+  template <class T>
+  std::vector<T> joined(const std::vector<T>& own) const {
+    if (count_ == 1) return own;
+    const auto bytes = static_cast<std::int64_t>(own.size() * sizeof(T));
+    std::vector<std::int64_t> of_rank(static_cast<std::size_t>(count_));
+    MPI_Allgather(&bytes, 1, MPI_INT64_T, of_rank.data(), 1, MPI_INT64_T, comm_);
+    std::int64_t total = 0;
+    std::vector<int> begin, size;
+    for (const std::int64_t b : of_rank) {
+      begin.push_back(static_cast<int>(total)), size.push_back(static_cast<int>(b));
+      total += b;
+    }
+    if (total > std::numeric_limits<int>::max()) throw Refusal{"more spheres than MPI gathers at once"};
+    std::vector<T> all(static_cast<std::size_t>(total) / sizeof(T));
+    MPI_Allgatherv(own.data(), static_cast<int>(bytes), MPI_BYTE, all.data(), size.data(), begin.data(),
+                   MPI_BYTE, comm_);
+    return all;
+  }
 
  private:
   Mpi() {
     int running = 0;
     MPI_Initialized(&running);
     if (!running) MPI_Init(nullptr, nullptr);
+    owner_ = !running;
+    MPI_Comm_dup(running ? MPI_COMM_WORLD : MPI_COMM_SELF, &comm_);
+    MPI_Comm_size(comm_, &count_);
   }
   ~Mpi() {
     int finished = 0;
     MPI_Finalized(&finished);
-    if (!finished) MPI_Finalize();
+    if (owner_ && !finished) MPI_Finalize();
   }
+  bool owner_ = false;
+  MPI_Comm comm_ = MPI_COMM_NULL;
+  int count_ = 1;
 };
 
 /// Keeps std::cerr quiet: every instance after the first warns that its contact models exist already.
@@ -142,6 +176,16 @@ class PackedSprings {
   int count_ = 0;
 };
 
+/// What one rank says of a sphere of its own, and of a spring: of mesh `mesh`, or of a pair (-1).
+struct SphereState {
+  std::int64_t sphere;
+  Vec3 position_m, velocity_m_s, angular_velocity_rad_s;
+};
+struct SpringState {
+  std::int64_t mesh;
+  Spring spring;
+};
+
 void sort(std::vector<Spring>& springs) {
   std::sort(springs.begin(), springs.end(), [](const Spring& a, const Spring& b) {
     return a.sphere != b.sphere ? a.sphere < b.sphere : a.partner < b.partner;
@@ -158,6 +202,7 @@ struct Session::Impl {
   std::vector<MeshFixes> meshes;
   bool abandoned = false;
   PackedSprings packed;
+  std::vector<std::int32_t> atom_of;  ///< by sphere; -1: of another rank
 
   template <class F>
   void guarded(F action) {
@@ -174,6 +219,8 @@ struct Session::Impl {
   FixContactHistory& history(Fix* fix, const char* name) const;
   void finish_set_up();
   int& lists_are_newer();
+  bool owns(const Vec3& p) const;
+  void create_atoms(const Spheres& spheres);
   void place(const Spheres& spheres);
   void give_pair_springs(const Spheres& spheres);
   void give_wall_springs(const std::vector<Spring>& springs, const MeshFixes& mesh);
@@ -181,13 +228,13 @@ struct Session::Impl {
 };
 
 Session::Session() : impl_(std::make_unique<Impl>()) {
-  Mpi::start();
+  const Mpi& mpi = Mpi::started();
   const Quiet quiet;
   // It writes to its screen without asking whether it has one.
   std::string words[] = {"granrad", "-log", "none", "-screen", "/dev/null", "-echo", "none"};
   std::vector<char*> arguments;
   for (auto& word : words) arguments.push_back(word.data());
-  lammps_open(static_cast<int>(arguments.size()), arguments.data(), MPI_COMM_SELF, &impl_->handle);
+  lammps_open(static_cast<int>(arguments.size()), arguments.data(), mpi.comm(), &impl_->handle);
   impl_->lmp = static_cast<LAMMPS_NS::LAMMPS*>(impl_->handle);
   // The layout of its classes is that of its headers.
   if (lammps_extract_global(impl_->handle, "nlocal") != &impl_->lmp->atom->nlocal)
@@ -259,17 +306,31 @@ int& Session::Impl::lists_are_newer() {
   return *flag;
 }
 
-/// Sphere k becomes atom k with tag k + 1.
-void Session::Impl::place(const Spheres& spheres) {
+/// Whether a point lies in this rank's part of the domain; what lies outside the domain belongs to the part at its side.
+bool Session::Impl::owns(const Vec3& p) const {
+  const auto& domain = *lmp->domain;
+  const auto& comm = *lmp->comm;
+  for (int a = 0; a < 3; ++a) {
+    const bool below = p[a] < domain.sublo[a] && comm.myloc[a] > 0;
+    const bool beyond = p[a] >= domain.subhi[a] && comm.myloc[a] < comm.procgrid[a] - 1;
+    if (below || beyond) return false;
+  }
+  return true;
+}
+
+/// Sphere k becomes the atom with tag k + 1, on its rank.
+void Session::Impl::create_atoms(const Spheres& spheres) {
   auto& atom = *lmp->atom;
   atom.map_clear();
   atom.nlocal = atom.nghost = 0;
+  atom_of.assign(spheres.position_m.size(), -1);
   for (std::size_t k = 0; k < spheres.position_m.size(); ++k) {
+    if (!owns(spheres.position_m[k])) continue;
     double at[3];
     put(spheres.position_m[k], at);
-    const int i = atom.nlocal;
+    const int i = atom_of[k] = atom.nlocal;
     atom.avec->create_atom(spheres.type[k], at);
-    atom.tag[i] = i + 1;
+    atom.tag[i] = static_cast<int>(k) + 1;
     atom.radius[i] = spheres.radius_m[k];
     atom.density[i] = spheres.density_kg_m3[k];
     atom.rmass[i] = 4.0 / 3.0 * 3.14159265358979323846 * spheres.radius_m[k] * spheres.radius_m[k] *
@@ -278,9 +339,19 @@ void Session::Impl::place(const Spheres& spheres) {
     put(spheres.angular_velocity_rad_s[k], atom.omega[i]);
     for (int n = 0; n < atom.nextra_grow; ++n) lmp->modify->fix[atom.extra_grow[n]]->set_arrays(i);
   }
-  atom.natoms = atom.nlocal;
+  atom.natoms = static_cast<LAMMPS_NS::bigint>(spheres.position_m.size());
   atom.map_init();
   atom.map_set();
+}
+
+/// Where the domain grows to hold the spheres, ranks' parts move: they are dealt out anew then.
+void Session::Impl::place(const Spheres& spheres) {
+  create_atoms(spheres);
+  if (Mpi::started().count() == 1) return;
+  const auto part = [&] { return std::pair(vec3(lmp->domain->sublo), vec3(lmp->domain->subhi)); };
+  const auto before = part();
+  lmp->domain->reset_box();
+  if (!Mpi::started().joined(std::vector<char>(before == part() ? 0 : 1)).empty()) create_atoms(spheres);
 }
 
 void Session::Impl::give_pair_springs(const Spheres& spheres) {
@@ -292,7 +363,7 @@ void Session::Impl::give_pair_springs(const Spheres& spheres) {
     packed.clear();
     for (; k < both.size() && both[k].sphere == sphere; ++k)
       packed.add(both[k].partner + 1, both[k].displacement_m);
-    packed.unpack_into(*pairs, sphere);
+    if (atom_of[sphere] >= 0) packed.unpack_into(*pairs, atom_of[sphere]);
   }
 }
 
@@ -303,37 +374,48 @@ void Session::Impl::give_wall_springs(const std::vector<Spring>& springs, const 
     packed.clear();
     for (; k < springs.size() && springs[k].sphere == sphere; ++k)
       packed.add(springs[k].partner, springs[k].displacement_m);
-    mesh.neighbours->set_vector_atom_int(sphere, packed.count());
-    packed.unpack_into(*mesh.history, sphere);
+    if (atom_of[sphere] < 0) continue;
+    mesh.neighbours->set_vector_atom_int(atom_of[sphere], packed.count());
+    packed.unpack_into(*mesh.history, atom_of[sphere]);
   }
 }
 
 void Session::Impl::read(Spheres& spheres) {
   auto& atom = *lmp->atom;
-  const auto n = static_cast<int>(spheres.position_m.size());
-  if (atom.nlocal != n) throw Refusal{std::to_string(n - atom.nlocal) + " particles left its domain"};
   lmp->modify->pre_exchange();  // history from the lists to the spheres
-  spheres.pair_springs.clear();
-  spheres.wall_springs.assign(meshes.size(), {});
-  for (int i = 0; i < n; ++i) {
+  std::vector<SphereState> states;
+  std::vector<SpringState> springs;
+  for (int i = 0; i < atom.nlocal; ++i) {
     const std::int32_t k = atom.tag[i] - 1;
     double unwrapped[3];
     lmp->domain->unmap(atom.x[i], atom.image[i], unwrapped);
-    spheres.position_m[k] = vec3(unwrapped);
-    spheres.velocity_m_s[k] = vec3(atom.v[i]);
-    spheres.angular_velocity_rad_s[k] = vec3(atom.omega[i]);
+    states.push_back({k, vec3(unwrapped), vec3(atom.v[i]), vec3(atom.omega[i])});
     packed.pack_from(*pairs, i);
     for (int p = 0; p < packed.count(); ++p)
       if (packed.partner(p) - 1 > k)
-        spheres.pair_springs.push_back({k, packed.partner(p) - 1, packed.displacement(p)});
+        springs.push_back({-1, {k, packed.partner(p) - 1, packed.displacement(p)}});
     for (std::size_t m = 0; m < meshes.size(); ++m) {
       packed.pack_from(*meshes[m].history, i);
       for (int p = 0; p < packed.count(); ++p)
-        spheres.wall_springs[m].push_back({k, packed.partner(p), packed.displacement(p)});
+        springs.push_back({static_cast<std::int64_t>(m), {k, packed.partner(p), packed.displacement(p)}});
     }
   }
+  states = Mpi::started().joined(states), springs = Mpi::started().joined(springs);
+  if (states.size() != spheres.position_m.size())
+    throw Refusal{std::to_string(spheres.position_m.size() - states.size()) + " particles left its domain"};
+  for (const SphereState& s : states) {
+    const auto k = static_cast<std::size_t>(s.sphere);
+    spheres.position_m[k] = s.position_m;
+    spheres.velocity_m_s[k] = s.velocity_m_s;
+    spheres.angular_velocity_rad_s[k] = s.angular_velocity_rad_s;
+  }
+  spheres.pair_springs.clear();
+  spheres.wall_springs.assign(meshes.size(), {});
+  for (const SpringState& s : springs)
+    (s.mesh < 0 ? spheres.pair_springs : spheres.wall_springs[static_cast<std::size_t>(s.mesh)])
+        .push_back(s.spring);
   sort(spheres.pair_springs);
-  for (auto& springs : spheres.wall_springs) sort(springs);
+  for (auto& of_mesh : spheres.wall_springs) sort(of_mesh);
 }
 
 void Session::run(Spheres& spheres, std::int64_t steps) {

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <numeric>
@@ -36,6 +37,19 @@ int copies_started() {
   return launcher_says({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MPI_LOCALNRANKS", "SLURM_STEP_NUM_TASKS"})
       .value_or(1);
 }
+
+double seconds_between = 0;
+
+/// Counts the time until its end as spent between ranks.
+class Between {
+ public:
+  ~Between() {
+    seconds_between += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
 
 /// stdout into nothing, stderr into a file that leave_ranks shows where this rank alone fails.
 void fall_silent() {
@@ -127,8 +141,14 @@ RankPart part_of_rank(std::int64_t count, int of) {
   return {count * of / rank_count(), count * (of + 1) / rank_count()};
 }
 
+double seconds_between_ranks() {
+  return seconds_between;
+}
+
 void sum_over_ranks(std::span<std::int64_t> values) {
-  if (functions) functions->sum(values.data(), values.size());
+  if (!functions) return;
+  const Between between;
+  functions->sum(values.data(), values.size());
 }
 
 std::int64_t largest_over_ranks(std::int64_t value) {
@@ -169,6 +189,7 @@ void require_same_on_ranks(std::uint64_t value, const std::string& what) {
 
 std::vector<std::vector<char>> shared_bytes(std::span<const char> own) {
   if (!functions) return {std::vector<char>(own.begin(), own.end())};
+  const Between between;
   const auto sizes = sizes_of_ranks(own.size());
   std::vector<char> all(std::accumulate(sizes.begin(), sizes.end(), std::size_t{0}));
   functions->share(own.data(), all.data(), sizes.data());
@@ -177,6 +198,7 @@ std::vector<std::vector<char>> shared_bytes(std::span<const char> own) {
 
 std::vector<std::vector<char>> exchanged_bytes(const std::vector<std::vector<char>>& to) {
   if (!functions) return to;
+  const Between between;
   const auto ranks = static_cast<std::size_t>(rank_count());
   std::vector<std::int64_t> table(ranks * ranks, 0);  // [from][to]
   std::vector<std::size_t> out, in;

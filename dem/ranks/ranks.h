@@ -34,6 +34,9 @@ struct RankPart {
 };
 RankPart part_of_rank(std::int64_t count, int of = rank());
 
+/// Clock time spent in what follows here, waiting for other ranks included.
+double seconds_between_ranks();
+
 void sum_over_ranks(std::span<std::int64_t> values);
 std::int64_t largest_over_ranks(std::int64_t value);
 

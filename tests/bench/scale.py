@@ -1,0 +1,179 @@
+#!/usr/bin/env python3
+"""What each part of a coupled run takes on one and on two ranks, beside LIGGGHTS' flow alone, and what a model fitted
+to that says of more ranks.
+
+Usage: scale.py [--quick] GRANRUN FOLDER
+
+Beds of touching spheres on a lattice, pushed and under gravity; conduction every 100 DEM steps, rays (as many walks as
+spheres) every 1000. One thread a rank. "alone" is LIGGGHTS through the same plug-in with no heat at all: twice the
+difference of all steps in one go and half of them, so that neither start nor hand-over counts. "gather" is what the
+coupled flow takes beyond all steps in one go: the hand-overs of the other heat steps.
+"""
+import csv, json, math, os, pathlib, shutil, subprocess, sys
+
+STEP_S, HEAT_STEPS, RAY_STEPS, DIAMETER_M = 1e-5, 100, 1000, 8e-4
+PARTS = ["flow", "gather", "conduction", "rays", "reduce", "output"]
+NETWORK_DELAY_S = 5e-5  # of one step of an exchange between nodes; the machine measured on has none
+
+
+def write_bed(file, side):
+    d = 0.999 * DIAMETER_M
+    with open(file, "w") as out:
+        out.write("x,y,z,radius,temperature,vx,vy,vz\n")
+        for k in range(side**3):
+            i, j, l = k % side, k // side % side, k // side**2
+            out.write("%.9g,%.9g,%.9g,%g,%g,%.3g,%.3g,0\n" % (d * (i + 0.5), d * (j + 0.5), d * (l + 0.5), DIAMETER_M / 2,
+                                                               300 + k % 7, 0.01 * math.sin(k), 0.01 * math.cos(k)))
+
+
+def scene(side, engine, steps, heat_steps, heat, walks):
+    size = 0.999 * DIAMETER_M * side
+    end = steps * STEP_S
+    walls = "".join('[walls.%s]\nrole = "isothermal"\ntemperature_K = 1000\n' % (a + s) for a in "xyz" for s in ("_min", "_max"))
+    radiation = f'[radiation]\nsource = "paths"\nrays = {walks}\nevery_s = {min(RAY_STEPS, steps) * STEP_S}\n' if heat else ""
+    return f"""[scene]
+name = "scale"
+end_time_s = {end:.9g}
+gravity_m_s2 = [0, 0, -9.81]
+[material]
+density_kg_m3 = 3984
+specific_heat_J_kgK = 755
+conductivity_W_mK = 33
+youngs_modulus_Pa = 5e6
+real_youngs_modulus_Pa = 414e9
+poisson_ratio = 0.23
+restitution = 0.45
+friction = 0.4
+{"[gas]" if heat else ""}
+[particles]
+file = "bed_{side}.csv"
+[box]
+size_m = [{size}, {size}, {size}]
+{walls}[dem]
+engine = "{engine}"
+step_s = {STEP_S}
+[conduction]
+solid = {"true" if heat else "false"}
+every_steps = {heat_steps}
+{radiation}[output]
+every_s = {end:.9g}
+frames_every_s = {end:.9g}
+"""
+
+
+class Machine:
+    def __init__(self, granrun, folder):
+        self.granrun, self.folder = granrun, folder
+        self.environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                                OMPI_MCA_rmaps_base_oversubscribe="1",
+                                OMPI_MCA_btl_vader_single_copy_mechanism="none")
+
+    def seconds(self, text, ranks):
+        file, case = self.folder / "scale.toml", self.folder / "case"
+        file.write_text(text)
+        shutil.rmtree(case, ignore_errors=True)
+        launcher = ["mpirun", "-n", str(ranks), "--bind-to", "core"] if ranks > 1 else []
+        subprocess.run(launcher + [self.granrun, "run", str(file), "-q", "--threads", "1", "-o", str(case)],
+                       check=True, env=self.environment, stdout=subprocess.DEVNULL)
+        return json.loads((case / "run.json").read_text())["computing_seconds"]
+
+
+def measure(machine, side, ranks, engine, steps):
+    """Seconds of each part for `steps` DEM steps; and of LIGGGHTS alone."""
+    alone, gather = None, 0.0
+    spent = machine.seconds(scene(side, engine, steps, HEAT_STEPS, True, side**3), ranks)
+    flow = spent["flow"]
+    if engine == "liggghts":
+        half, whole = (machine.seconds(scene(side, engine, n, n, False, 0), ranks)["flow"] for n in (steps // 2, steps))
+        flow = alone = max(1e-9, 2 * (whole - half))
+        hand_overs = steps // HEAT_STEPS
+        gather = max(0.0, spent["flow"] - whole) * hand_overs / (hand_overs - 1)
+    reduce = min(spent["between_ranks"], spent["radiation"])
+    return {"engine": engine, "spheres": side**3, "ranks": ranks, "steps": steps, "flow": flow,
+            "gather": gather, "conduction": spent["conduction"], "rays": spent["radiation"] - reduce, "reduce": reduce,
+            "output": spent["output"], "alone": alone}
+
+
+def print_row(row):
+    total = sum(row[p] for p in PARTS)
+    shares = "  ".join(f"{p} {row[p]:.2f} s ({100 * row[p] / total:.0f} %)" for p in PARTS)
+    print(f"{row['engine']:9} {row['spheres']:>8} spheres, {row['ranks']} ranks, {row['steps']} steps: {shares}", flush=True)
+    if row["alone"]:
+        over = 100 * (total / row["alone"] - 1)
+        print(f"scale_{row['spheres']}_{row['ranks']} ours {total:.2f} s liggghts {row['alone']:.2f} s ratio "
+              f"{row['alone'] / total:.3f}   (heat and hand-over cost {over:.0f} % of its flow)", flush=True)
+
+
+def model(one, two, ranks, spheres):
+    """Seconds of each part on `ranks` for `spheres`, from measurements of one bed on one and two ranks.
+
+    a part that is shared: t(R) = repeated + shared / R, both from R = 1 and 2; all in proportion to the spheres;
+    the flow of LIGGGHTS: shared, with what two ranks lost to each other growing as the surface of a rank's part,
+    (R / N)^(1/3); one exchange of heats a radiation update: the measured time, and a delay for log2 R steps."""
+    size = spheres / one["spheres"]
+    seconds = {}
+    for part in PARTS:
+        first, second = one[part] * size, two[part] * size
+        if part == "rays":
+            repeated = min(max(0.0, 2 * second - first), first)
+            seconds[part] = repeated + (first - repeated) / ranks
+        elif part == "flow" and one["engine"] == "liggghts":
+            lost = max(0.0, 2 * second / first - 1)
+            seconds[part] = first / ranks * (1 + (lost * (ranks / 2 / size) ** (1 / 3) if ranks > 1 else 0))
+        elif part == "reduce":
+            updates = max(1, one["steps"] // RAY_STEPS)
+            seconds[part] = (second + updates * NETWORK_DELAY_S * math.ceil(math.log2(ranks))) if ranks > 1 else 0
+        else:
+            seconds[part] = first
+    return seconds
+
+
+def print_model(rows, engine, out):
+    fitting = [r for r in rows if r["engine"] == engine]
+    largest = max(r["spheres"] for r in fitting)
+    one, two = (next(r for r in fitting if r["spheres"] == largest and r["ranks"] == k) for k in (1, 2))
+    for kind in ("strong", "weak"):
+        print(f"\n{kind} scaling of {engine}, a model fitted to {largest} spheres "
+              f"({'the same bed' if kind == 'strong' else f'{largest} spheres for each rank'}); seconds for {one['steps']} steps")
+        print(f"{'ranks':>6} " + " ".join(f"{p:>10}" for p in PARTS) + f" {'total':>10} {'efficiency':>10}")
+        base = None
+        for power in range(11):
+            ranks = 2**power
+            t = model(one, two, ranks, largest * (1 if kind == "strong" else ranks))
+            total = sum(t.values())
+            base = base or total
+            efficiency = base / total / (ranks if kind == "strong" else 1)
+            print(f"{ranks:>6} " + " ".join(f"{t[p]:>10.3g}" for p in PARTS) + f" {total:>10.3g} {efficiency:>10.2f}")
+            out.writerow([kind, engine, ranks] + [f"{t[p]:.5g}" for p in PARTS] + [f"{total:.5g}", f"{efficiency:.4f}"])
+
+
+def main():
+    quick = "--quick" in sys.argv
+    granrun, folder = [a for a in sys.argv[1:] if a != "--quick"]
+    folder = pathlib.Path(folder) / "scale"
+    folder.mkdir(parents=True, exist_ok=True)
+    machine = Machine(granrun, folder)
+    print("CPU:", next((l.split(":")[1].strip() for l in open("/proc/cpuinfo") if l.startswith("model name")), "unknown"),
+          f"x {os.cpu_count()}")
+    rows = []
+    for side in (16,) if quick else (27, 58, 100):
+        write_bed(folder / f"bed_{side}.csv", side)
+        for engine in ("liggghts", "native"):
+            for ranks in (1, 2):
+                rows.append(measure(machine, side, ranks, engine, 1000))
+                print_row(rows[-1])
+        (folder / f"bed_{side}.csv").unlink()
+    with open(folder / "scale.csv", "w") as file:
+        out = csv.DictWriter(file, rows[0].keys())
+        out.writeheader()
+        out.writerows(rows)
+    with open(folder / "scale_model.csv", "w") as file:
+        out = csv.writer(file)
+        out.writerow(["scaling", "engine", "ranks"] + PARTS + ["total", "efficiency"])
+        for engine in ("liggghts", "native"):
+            print_model(rows, engine, out)
+    print("\nThe model's assumptions: one rank a node with one thread, as measured; a network as fast as this machine's memory "
+          f"but for {1e6 * NETWORK_DELAY_S:.0f} us a step; beds cut evenly; native flow, conduction and output as on one rank.")
+
+
+main()

@@ -1,0 +1,102 @@
+// Requirement: the flow on LIGGGHTS runs on several ranks: spheres that meet across the ranks' parts of the domain move as
+// on one rank but for the order of sums, springs between parts survive the hand-over at every heat step, ranks without
+// spheres do no harm, the books close, and a case goes on with another number of ranks.
+// Planted: springs handed to the rank of one of the two spheres only (ABedMovesAsOnOneRank).
+#include <cmath>
+
+#include "coupling/simulation/history.h"
+#include "dem/io/snapshot.h"
+#include "liggghts_built.h"
+#include "mpirun.h"
+
+using namespace granrad;
+using namespace granrad::cli;
+
+namespace {
+
+class RanksLiggghts : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!ranks_are_built() || !liggghts_is_built())
+      GTEST_SKIP() << "built without MPI or LIGGGHTS, or no mpirun";
+  }
+
+  /// small_plug without its feed, started from a file, under gravity.
+  std::string scene_of(const std::string& rows) {
+    scratch.write("bed.csv", "x,y,z,radius,temperature,vx,vy,vz,omegax,omegay,omegaz\n" + rows);
+    std::string text = small_plug;
+    const auto feed = text.find("[feed]");
+    text.erase(feed, text.find("[dem]") - feed);
+    text = edited(text, "diameter_m = \"0.8 mm\"\ntemperature_K = 300", "file = \"bed.csv\"");
+    text = edited(text, "end_time_s = 0.04", "end_time_s = 0.002\ngravity_m_s2 = [0, 0, -9.81]");
+    text = edited(text, "every_s = 0.004", "every_s = 0.001");
+    return scratch.write("bed.toml", text).string();
+  }
+  std::string line(const std::string& scene, const fs::path& folder, const std::string& more = "") {
+    return "run " + scene + " -q --threads 1 --set dem.engine=liggghts -o " + folder.string() + more;
+  }
+  void expect_near(const fs::path& a, const fs::path& b, double position_radii, double relative) {
+    const Bed one = read_frame(last_frame(a)).bed, other = read_frame(last_frame(b)).bed;
+    ASSERT_EQ(one.id, other.id);
+    EXPECT_EQ(one.contacts.size(), other.contacts.size());
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      EXPECT_LE(norm(one.position_m[i] - other.position_m[i]), position_radii * one.radius_m[i]) << i;
+      EXPECT_LE(norm(one.velocity_m_s[i] - other.velocity_m_s[i]), relative) << i;
+      EXPECT_NEAR(one.temperature_K[i] / other.temperature_K[i], 1, relative) << i;
+    }
+  }
+  Scratch scratch;
+};
+
+/// 160 spheres that touch, pushed and spun: friction builds springs everywhere.
+std::string packed_rows() {
+  std::string rows;
+  for (int k = 0; k < 160; ++k) {
+    const double shift = 2e-6 * std::sin(3.0 * k), d = 7.992e-4;
+    const auto at = [&](int n, double s) { return std::to_string(1e3 * (d * (n + 0.5) + s)) + "e-3,"; };
+    rows += at(k % 5, shift) + at(k / 5 % 4, -shift) + at(k / 20, shift) + "4e-4," +
+            std::to_string(300 + k % 7) + "," + std::to_string(0.05 * std::sin(k)) + "," +
+            std::to_string(0.05 * std::cos(2 * k)) + "," + std::to_string(0.05 * std::sin(5 * k)) + "," +
+            std::to_string(20 * std::sin(k)) + "," + std::to_string(20 * std::cos(k)) + ",5\n";
+  }
+  return rows;
+}
+
+// Two spheres meet in the middle of the box, where two ranks' parts meet; of three ranks one has none.
+TEST_F(RanksLiggghts, TwoSpheresMeetAcrossParts) {
+  const auto scene = scene_of(
+      "0.0019,0.0015,0.0029,4e-4,300,0.1,0,0,0,10,0\n"
+      "0.0022,0.0015,0.00366,4e-4,310,-0.1,0.02,-0.1,5,0,0\n");
+  const auto alone = scratch.root / "alone";
+  ASSERT_EQ(granrun(scratch, line(scene, alone)).code, 0);
+  for (const int r : {2, 3}) {
+    const auto shared = scratch.root / ("ranks" + std::to_string(r));
+    const auto outcome = run_on_ranks(scratch, r, "granrun", line(scene, shared));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    expect_near(alone, shared, 1e-11, 1e-11);
+  }
+}
+
+TEST_F(RanksLiggghts, ABedMovesAsOnOneRank) {
+  const auto scene = scene_of(packed_rows());
+  const auto alone = scratch.root / "alone", shared = scratch.root / "shared";
+  ASSERT_EQ(granrun(scratch, line(scene, alone)).code, 0);
+  const auto outcome = run_on_ranks(scratch, 2, "granrun", line(scene, shared));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  expect_near(alone, shared, 1e-9, 1e-8);
+  ASSERT_GT(read_frame(last_frame(shared)).bed.contacts.size(), 200u);
+  for (const double defect : read_history(shared / "history.csv").at("energy_defect"))
+    EXPECT_LE(defect, 1e-9);
+}
+
+TEST_F(RanksLiggghts, ABedGoesOnWithAnotherNumberOfRanksLong) {
+  const auto scene = scene_of(packed_rows());
+  const auto alone = scratch.root / "alone", resumed = scratch.root / "resumed";
+  ASSERT_EQ(granrun(scratch, line(scene, alone)).code, 0);
+  ASSERT_EQ(run_on_ranks(scratch, 4, "granrun", line(scene, resumed, " --set scene.end_time_s=0.001")).code,
+            0);
+  ASSERT_EQ(run_on_ranks(scratch, 3, "granrun", line(scene, resumed, " --resume")).code, 0);
+  expect_near(alone, resumed, 1e-9, 1e-8);
+}
+
+}  // namespace
