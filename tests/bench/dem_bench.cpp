@@ -99,7 +99,8 @@ struct Way {
 };
 
 void conduct(Bed& bed, native::NativeEngine& engine) {
-  const ConductionSettings settings{.gas = GasLens{}};
+  ConductionSettings settings;
+  settings.gas = GasLens{};
   const auto pairs = engine.near_pairs(bed, lens_cutoff_gap_m(settings, radius));
   advance_temperatures(bed, conductances(bed, pairs, settings), piece * step);
 }
