@@ -1,4 +1,5 @@
 # tests of raytrace: granrad_test(shelf/name libraries...)
+granrad_test(unit/ray_monitor granrad_rays)
 granrad_test(unit/closure granrad_raytrace)
 granrad_test(unit/damaged_hdf5 granrad_raytrace hdf5::hdf5)
 granrad_test(analytic/view_factors granrad_raytrace nlohmann_json::nlohmann_json)

@@ -29,7 +29,8 @@ class RayMonitor {
   bool go_on(std::int64_t work);
   /// To be called by every rank: where one was stopped, all are.
   void throw_if_stopped() const {
-    if (watch_ && largest_over_ranks(stopped_) != 0) throw TraceStopped();
+    // Without a watch only a process that is alone stops: nobody waits for it.
+    if (watch_ ? largest_over_ranks(stopped_) != 0 : stopped_.load()) throw TraceStopped();
   }
 
  private:
