@@ -32,7 +32,8 @@ usage() {
   sed -n '2,4s/^# //p' "$root/do"
   cat <<'EOF'
   demo        a plug flow of hot-walled alumina, about 1 s of flow: table, frames and a page
-  fuzz [N]    N random scenes (100) against what must hold whatever they are; failures are made small and kept
+  fuzz [N]    N random scenes (100) against what must hold whatever they are; failures are made small and kept; a run
+              is killed at random moments and resumed
   test        the test suite (minutes)
   test-long   the physics that takes long
   gates       layout of the sources, headers alone
@@ -157,6 +158,7 @@ case ${1:-} in
   fuzz)
     set_up
     build granrun judge_runner
+    "$root/tests/judge/kills.py" "$build/bin/granrun" --count 10
     "$root/tests/judge/judge.py" "$build/tests/judge_runner" "$build/bin/granrun" --count "${2:-100}" --first "${3:-1}" \
       --jobs "$(nproc)" --keep "$build/judge"
     ;;
@@ -211,12 +213,12 @@ EOF
     which=() options=()
     for word in "$@"; do
       case $word in
-        trace | dem | heat | case | front | scale) which+=("$word") ;;
+        trace | dem | heat | case | front | scale | load) which+=("$word") ;;
         --quick | --full) options=("$word") ;;
         *) usage >&2; exit 2 ;;
       esac
     done
-    ((${#which[@]})) || which=(trace dem heat case front scale)
+    ((${#which[@]})) || which=(trace dem heat case front scale load)
     [[ ${options[*]} != --full || ${which[*]} == front ]] || { echo "--full is for front" >&2; exit 2; }
     set_up
     install_missing liggghts lammps
@@ -225,6 +227,13 @@ EOF
         build granrun
         say "bench scale"
         python3 "$root/tests/bench/scale.py" "${options[@]}" "$build/bin/granrun" "$build/bench"
+        continue
+      fi
+      if [[ $name == load ]]; then
+        build granrun
+        mkdir -p "$build/bench"
+        say "bench load"
+        "$root/tests/bench/load_bench.py" "$build/bin/granrun" "$root/data/scenes" "$build/bench" "${options[@]}"
         continue
       fi
       build "${name}_bench"

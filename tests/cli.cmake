@@ -45,3 +45,6 @@ target_link_libraries(judge_runner PRIVATE granrad_simulation nlohmann_json::nlo
 add_test(NAME judge.short COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/judge/judge.py $<TARGET_FILE:judge_runner>
   $<TARGET_FILE:granrun> --count 40 --keep ${PROJECT_BINARY_DIR}/judge)
 set_tests_properties(judge.short PROPERTIES LABELS cli TIMEOUT 300)
+# Each oracle sees a wrong answer.
+add_test(NAME judge.plantedLong COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/judge/planted.py $<TARGET_FILE:judge_runner>)
+set_tests_properties(judge.plantedLong PROPERTIES LABELS long TIMEOUT 3600)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 
 #include "coupling/heat/heat_step.h"
@@ -63,6 +64,25 @@ std::string outside_note(const Scene& scene, const Bed& bed) {
                  "widen [region], or [box]");
 }
 
+/// Engines that keep no record of what touched between heat steps: contacts conduct as they stand at each.
+std::string sampled_contacts_note(const Case& c, const StepLimits& limits, const TimePlan& plan) {
+  constexpr double samples_of_a_collision = 10;
+  if (!c.heat.conduction.solid || c.heat.conduction.rough) return "";
+  if (c.flow.engine == EngineKind::replay)
+    return fmt::format(
+        "a recorded flow tells its contacts at heat steps alone, {:.3g} s apart: those that last are "
+        "heated through, collisions shorter than that are missed or count too long",
+        plan.tick_s);
+  if (c.flow.engine != EngineKind::liggghts || plan.tick_s * samples_of_a_collision <= limits.hertz_time_s)
+    return "";
+  const double steps =
+      std::max(1.0, std::floor(limits.hertz_time_s / (samples_of_a_collision * plan.step_s)));
+  return fmt::format(
+      "LIGGGHTS tells its contacts at heat steps alone, {:.3g} s apart, and a collision lasts {:.3g} s: "
+      "conduction.every_steps = {:.0f} follows it, dem.engine = \"native\" integrates it",
+      plan.tick_s, limits.hertz_time_s, steps);
+}
+
 }  // namespace
 
 Simulation::Simulation(const Case& c, int threads)
@@ -76,6 +96,8 @@ void Simulation::start(Bed bed) {
   make_plan();
   notes_ = case_.flow.notes;
   if (const auto note = outside_note(case_.flow, bed_); !note.empty()) notes_.push_back(note);
+  if (auto note = sampled_contacts_note(case_, limits_, plan_); !note.empty())
+    notes_.push_back(std::move(note));
   for (auto& note : check_radiation(case_.heat.radiation, case_.flow, bed_, case_.heat.surroundings_K))
     notes_.push_back(std::move(note));
   heat_.start(bed_);
