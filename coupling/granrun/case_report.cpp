@@ -13,6 +13,7 @@
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
 #include "dem/base/files/csv.h"
+#include "dem/base/stated_number.h"
 #include "dem/io/snapshot.h"
 #include "dem/page/html_report.h"
 
@@ -129,9 +130,7 @@ void add_profiles(HtmlReport& page, const CaseFolder& folder) {
 }
 
 std::string with_error(const Average& average) {
-  if (!std::isfinite(average.mean)) return "";
-  if (!std::isfinite(average.standard_error)) return fmt::format("{:.5g}", average.mean);
-  return fmt::format("{:.5g} ± {:.2g}", average.mean, average.standard_error);
+  return stated(average.mean, average.standard_error).text();
 }
 
 void add_walls(HtmlReport& page, const Results& results) {
@@ -147,14 +146,6 @@ void add_walls(HtmlReport& page, const Results& results) {
              rows);
 }
 
-/// "107.9" and "0.5": two digits of the error, and the value to the same place.
-Tile tile(const std::string& label, const std::string& unit, const Average& average, double factor = 1) {
-  const double value = factor * average.mean, error = std::abs(factor) * average.standard_error;
-  if (!std::isfinite(error) || error <= 0) return {label, fmt::format("{:.4g}", value), "", unit};
-  const int digits = std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12);
-  return {label, fmt::format("{:.{}f}", value, digits), fmt::format("{:.{}f}", error, digits), unit};
-}
-
 void add_head(HtmlReport& page, const Results& r, const RunRecord& record) {
   page.verdict(
       fmt::format(
@@ -167,7 +158,7 @@ void add_head(HtmlReport& page, const Results& r, const RunRecord& record) {
                        double factor = 1) {
     const auto found = r.column.find(column);
     if (found != r.column.end() && std::isfinite(found->second.mean) && found->second.mean != 0)
-      tiles.push_back(tile(label, unit, found->second, factor));
+      tiles.push_back(tile(label, unit, factor * found->second.mean, factor * found->second.standard_error));
   };
   add("h_wp_W_m2K", "wall-to-particle coefficient", "W/m²K");
   add("h_rad_W_m2K", "of it by radiation", "W/m²K");
@@ -188,11 +179,8 @@ void add_results(HtmlReport& page, const Results& results) {
     if (std::string(column.name) == "time_s" || average == results.column.end() ||
         !std::isfinite(average->second.mean))
       continue;
-    rows.push_back({column.name, fmt::format("{:.6g}", average->second.mean),
-                    std::isfinite(average->second.standard_error)
-                        ? fmt::format("{:.2g}", average->second.standard_error)
-                        : "",
-                    column.meaning});
+    const StatedNumber number = stated(average->second.mean, average->second.standard_error);
+    rows.push_back({column.name, number.value, number.error, column.meaning});
   }
   page.heading(fmt::format("Means from {:g} s to {:g} s", results.from_s, results.to_s));
   page.paragraph(results.steady ? "Steady: neither the mean temperature nor the heat drifts over this window."

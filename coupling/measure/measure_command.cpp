@@ -12,6 +12,7 @@
 #include "dem/base/error.h"
 #include "dem/base/files/text_file.h"
 #include "dem/base/program.h"
+#include "dem/base/stated_number.h"
 #include "dem/page/html_report.h"
 
 namespace granrad {
@@ -75,17 +76,22 @@ nlohmann::ordered_json as_json(const ConductivityResult& r) {
 }
 
 std::string text(const Estimate& e) {
-  return fmt::format("{:.4g} ± {:.2g}", e.value, e.error);
+  return stated(e.value, e.error).text();
 }
 
 void write_page(const fs::path& file, const std::string& name, const ConductivityResult& r) {
   HtmlReport page("Conductivity of a bed: " + name);
+  page.tiles({tile("conductivity of the middle half", "W/(m K)", r.total.value, r.total.error),
+              tile("of it by radiation", "W/(m K)", r.radiation.value, r.radiation.error),
+              tile("exchange factor F", "", r.exchange_factor.value, r.exchange_factor.error),
+              tile("resistance of a plate's layer", "m² K/W", r.wall_resistance_m2K_W.value,
+                   r.wall_resistance_m2K_W.error)});
   page.paragraph(fmt::format(
       "{} particles of {:.4g} mm at solid fraction {:.4f}, {:.1f} diameters between two plates "
       "in the steady state, about {:g} K. Errors are one standard error: rays by replicates, "
       "the bed by four columns.",
       r.particles, 1000 * r.diameter_m, r.solid_fraction, r.distance_m / r.diameter_m, r.temperature_K));
-  page.table({"", "", "unit"},
+  page.table({"quantity", "value", "unit"},
              {{"k, all paths", text(r.total), "W/(m K)"},
               {"k, solid contacts", text(r.solid), "W/(m K)"},
               {"k, gas", text(r.gas), "W/(m K)"},
@@ -111,6 +117,7 @@ void write_page(const fs::path& file, const std::string& name, const Conductivit
   page.chart(chart);
   page.paragraph(
       "Where the line misses 1 and 0 at the plates, the layer at the plate conducts less than the bulk.");
+  page.provenance_of_this_process();
   page.write(file);
 }
 
@@ -125,7 +132,8 @@ void print(const ConductivityResult& r, const fs::path& folder) {
   fmt::print("between the plates, {:g} K: {} particles, solid fraction {:.4f}\n", r.temperature_K,
              r.particles, r.solid_fraction);
   const auto line = [](const char* what, const Estimate& e, const char* unit) {
-    if (e.value != 0) fmt::print("  {:<28}{:>11.4g} +- {:<9.2g} {}\n", what, e.value, e.error, unit);
+    const StatedNumber number = stated(e.value, e.error);
+    if (e.value != 0) fmt::print("  {:<30}{:>11} +- {:<9} {}\n", what, number.value, number.error, unit);
   };
   line("k", r.total, "W/(m K)");
   line("  solid contacts", r.solid, "W/(m K)");

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "coupling/simulation/radiation_source.h"
+#include "dem/base/stated_number.h"
 
 namespace granrad {
 
@@ -83,10 +84,14 @@ std::vector<WallResult> wall_results(const std::vector<WallRow>& rows, double fr
   return results;
 }
 
+void print_line(const char* what, const StatedNumber& number, const char* unit) {
+  fmt::print("  {:<34}{:>12} +- {:<9} {}\n", what, number.value, number.error, unit);
+}
+
 void line(const char* what, const Average& average, const char* unit) {
   if (!std::isfinite(average.mean) || average.mean == 0) return;
   if (average.standard_error > 1e-12 * std::abs(average.mean))  // below: rounding of a constant
-    fmt::print("  {:<34}{:>12.5g} +- {:<9.2g} {}\n", what, average.mean, average.standard_error, unit);
+    print_line(what, stated(average.mean, average.standard_error), unit);
   else
     fmt::print("  {:<34}{:>12.5g}              {}\n", what, average.mean, unit);
 }

@@ -10,6 +10,7 @@
 #include "coupling/simulation/history.h"
 #include "dem/base/error.h"
 #include "dem/base/files/csv.h"
+#include "dem/base/stated_number.h"
 
 namespace granrad {
 
@@ -119,12 +120,7 @@ std::string claims_csv(const std::vector<Judgement>& judged) {
 }
 
 std::string with_error(const Measured& m) {
-  if (!std::isfinite(m.value)) return "";
-  if (!std::isfinite(m.error) || m.error <= 0) return fmt::format("{:.4g}", m.value);
-  const int digits = 1 - static_cast<int>(std::floor(std::log10(m.error)));
-  if (digits < 0) return fmt::format("{:.0f} ± {:.0f}", m.value, m.error);
-  if (digits > 6 && std::abs(m.value) < 1e-3) return fmt::format("{:.4g} ± {:.2g}", m.value, m.error);
-  return fmt::format("{:.{}f} ± {:.{}f}", m.value, digits, m.error, digits);
+  return stated(m.value, m.error).text();
 }
 
 std::vector<QuantityBias> biases(const std::vector<Judgement>& judged) {

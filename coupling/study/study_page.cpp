@@ -162,21 +162,82 @@ void add_figure(HtmlReport& page, const StudyFigure& figure, const StudyOutcome&
   if (!figure.text.empty()) page.paragraph(figure.text);
 }
 
-/// Without figures of its own a study shows what people look for first against every key that is a number.
+/// Varied keys that are numbers; of keys that always change together the first.
+std::vector<std::string> independent_keys(const StudyOutcome& outcome) {
+  std::vector<std::string> keys;
+  std::set<std::vector<std::string>> seen;
+  for (const auto& row : outcome.rows)
+    for (const auto& [key, value] : row.of->varied) {
+      if (!row.quantity.count(key) || std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
+      std::vector<std::string> column;
+      for (const auto& other : outcome.rows) column.push_back(of_key(other, key));
+      if (seen.insert(column).second) keys.push_back(key);
+    }
+  return keys;
+}
+
+bool is_there(const StudyOutcome& outcome, const std::string& name) {
+  return std::any_of(outcome.rows.begin(), outcome.rows.end(), [&](const StudyRow& row) {
+    const auto found = row.quantity.find(name);
+    return found != row.quantity.end() && std::isfinite(found->second.value) && found->second.value != 0;
+  });
+}
+
+/// Without figures of its own a study shows what people look for first against every key that is a number, a colour
+/// for each value of another key.
 std::vector<StudyFigure> usual_figures(const StudyOutcome& outcome) {
   std::vector<StudyFigure> all;
-  std::set<std::string> keys;
-  for (const auto& row : outcome.rows)
-    for (const auto& [key, value] : row.of->varied)
-      if (row.quantity.count(key) && keys.insert(key).second) {
-        StudyFigure figure;
-        figure.title = "Wall-to-particle coefficients against " + key;
-        figure.x = figure.x_label = key;
-        figure.y = {"h_wp_W_m2K", "h_ss_W_m2K", "h_sfs_W_m2K", "h_rad_W_m2K"};
-        figure.y_label = "h, W/(m² K)";
-        all.push_back(figure);
-      }
+  const auto keys = independent_keys(outcome);
+  for (const auto& key : keys) {
+    StudyFigure figure;
+    figure.title = "Wall-to-particle coefficients against " + key;
+    figure.x = figure.x_label = key;
+    figure.y_label = "h, W/(m² K)";
+    for (const auto& other : keys)
+      if (other != key && figure.by.empty()) figure.by = other;
+    for (const char* name : {"h_wp_W_m2K", "h_ss_W_m2K", "h_sfs_W_m2K", "h_rad_W_m2K"})
+      if (is_there(outcome, name) && (figure.by.empty() || figure.y.empty())) figure.y.push_back(name);
+    if (!figure.y.empty()) all.push_back(figure);
+  }
   return all;
+}
+
+/// The lowest and the highest of a quantity.
+void add_range(std::vector<Tile>& tiles, const StudyOutcome& outcome, const std::string& name,
+               const std::string& label, const std::string& unit) {
+  const StudyRow *low = nullptr, *high = nullptr;
+  const auto value = [&](const StudyRow* row) { return row->quantity.at(name).value; };
+  for (const auto& row : outcome.rows) {
+    if (!row.quantity.count(name) || !std::isfinite(value(&row))) continue;
+    if (!low || value(&row) < value(low)) low = &row;
+    if (!high || value(&row) > value(high)) high = &row;
+  }
+  if (!low || value(high) == 0) return;
+  for (const StudyRow* row : {high, low}) {
+    const auto& measured = row->quantity.at(name);
+    tiles.push_back(
+        tile(fmt::format("{} {}, of {}", row == high ? "highest" : "lowest", label, row->of->point), unit,
+             measured.value, measured.error));
+    if (high == low) break;
+  }
+}
+
+void add_head(HtmlReport& page, const StudyOutcome& outcome) {
+  double seconds = 0;
+  std::size_t finished = 0, agree = 0, judged = 0;
+  for (const auto& row : outcome.rows) seconds += row.seconds, finished += row.status() == "finished";
+  for (const auto& j : outcome.judged) agree += j.verdict == "agrees", judged += j.verdict == "differs";
+  judged += agree;
+  page.verdict(
+      fmt::format("{} of {} points finished, {:.0f} s of computing.{}", finished, outcome.rows.size(),
+                  seconds, judged ? fmt::format(" {} of {} numbers of others agree.", agree, judged) : ""),
+      finished == outcome.rows.size());
+  std::vector<Tile> tiles;
+  add_range(tiles, outcome, "h_wp_W_m2K", "wall-to-particle coefficient", "W/m²K");
+  add_range(tiles, outcome, "k_W_mK", "conductivity", "W/(m K)");
+  if (!tiles.empty()) page.tiles(tiles);
+  page.paragraph(
+      "Errors are standard errors: of the scatter between seeds where there are several, else of batches in time.");
 }
 
 void add_claims(HtmlReport& page, const StudyOutcome& outcome) {
@@ -201,7 +262,7 @@ void add_claims(HtmlReport& page, const StudyOutcome& outcome) {
                   "a statement without a number.",
                   rows.size(), agree, differ, not_possible, told));
   page.filtered_table(
-      {"", "quantity", "place", "claim", "reference", "ours", "unit", "difference", "verdict", "why"}, rows,
+      {"number", "quantity", "place", "claim", "reference", "ours", "unit", "difference", "verdict", "why"}, rows,
       {8, 1, 2});
 }
 
@@ -227,9 +288,7 @@ void add_points(HtmlReport& page, const StudyOutcome& outcome) {
   page.heading("Every case");
   std::vector<std::string> names;
   for (const char* name : {"h_wp_W_m2K", "Nu_d", "share_rad_pct", "mean_temperature_K", "solid_fraction"})
-    if (std::any_of(outcome.rows.begin(), outcome.rows.end(),
-                    [&](const auto& r) { return r.quantity.count(name); }))
-      names.push_back(name);
+    if (is_there(outcome, name)) names.push_back(name);
   std::vector<std::string> header = {"case", "status", "seeds"};
   header.insert(header.end(), names.begin(), names.end());
   header.push_back("seconds");
@@ -244,28 +303,25 @@ void add_points(HtmlReport& page, const StudyOutcome& outcome) {
     table.push_back(line);
   }
   page.table(header, table);
-  for (const auto& row : outcome.rows)
+  for (const auto& row : outcome.rows) {
+    std::set<std::string> told;  // replicates fail alike
     for (const auto& record : row.records)
-      if (record.status == "failed")
+      if (record.status == "failed" && told.insert(record.message).second)
         page.paragraph(fmt::format("{} failed: {}", row.of->point, record.message));
+  }
 }
 
 }  // namespace
 
 void write_study_page(const std::filesystem::path& file, const StudyOutcome& outcome) {
   HtmlReport page(outcome.study.title);
-  double seconds = 0;
-  std::size_t finished = 0;
-  for (const auto& row : outcome.rows) seconds += row.seconds, finished += row.status() == "finished";
-  page.paragraph(
-      fmt::format("{} of {} points finished, {:.0f} s of computing. Errors are standard errors: of the "
-                  "scatter between seeds where there are several, else of batches in time.",
-                  finished, outcome.rows.size(), seconds));
+  add_head(page, outcome);
   const auto figures = outcome.study.figures.empty() ? usual_figures(outcome) : outcome.study.figures;
   for (const auto& figure : figures) add_figure(page, figure, outcome);
   add_claims(page, outcome);
   add_fits(page, outcome);
   add_points(page, outcome);
+  page.provenance_of_this_process();
   page.write(file);
 }
 

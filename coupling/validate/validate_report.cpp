@@ -17,6 +17,56 @@ std::string known(double seconds) {
   return std::isfinite(seconds) ? fmt::format("{:.3g}", seconds) : "never";
 }
 
+constexpr double noticed_pct = 5;  ///< the head of a page is red beyond it, and beyond three errors
+
+/// Standard error of the mean over the particles, whose fluxes are taken as independent; 0: not known.
+double mean_flux_error(const SourceInstant& at) {
+  return at.flux_noise_W_m2 / std::sqrt(static_cast<double>(std::max<std::size_t>(1, at.flux_W_m2.size())));
+}
+
+/// How far a source is off, in % of the mean flux of the reference, at the first instant.
+struct Off {
+  std::string label;
+  double percent, error;
+};
+
+std::vector<Off> sources_off(const ValidatedBed& bed) {
+  const SourceInstant& reference = bed.tracks.front().at.front();
+  std::vector<Off> all;
+  for (std::size_t k = 1; k < bed.tracks.size(); ++k) {
+    if (!is_last_step(bed, k)) continue;
+    const SourceInstant& at = bed.tracks[k].at.front();
+    const double error = std::hypot(mean_flux_error(at), mean_flux_error(reference));
+    all.push_back({bed.tracks[k].label, compare(at, reference).flux_error_pct,
+                   100 * error / std::abs(reference.mean_flux_W_m2)});
+  }
+  return all;
+}
+
+void add_head(HtmlReport& page, const ValidatedBed& bed) {
+  const SourceInstant& reference = bed.tracks.front().at.front();
+  auto off = sources_off(bed);
+  std::vector<Tile> tiles = {tile("mean flux, " + bed.tracks.front().label, "W/m²", reference.mean_flux_W_m2,
+                                  mean_flux_error(reference))};
+  for (const auto& one : off) {
+    tiles.push_back(tile(one.label + ": mean flux off by", "%", one.percent, one.error));
+    if (one.percent > 0) tiles.back().value = fmt::format("+{}", tiles.back().value);
+  }
+  std::stable_sort(off.begin(), off.end(),
+                   [](const Off& a, const Off& b) { return std::abs(a.percent) < std::abs(b.percent); });
+  std::string ranking;
+  bool within = true;
+  for (const auto& one : off) {
+    ranking += fmt::format("{}{} {:+.2g} %", ranking.empty() ? "" : ", ", one.label, one.percent);
+    within = within && std::abs(one.percent) <= std::max(noticed_pct, 3 * one.error);
+  }
+  if (!off.empty())
+    page.verdict(fmt::format("Mean flux at {:g} s, the closest to the reference first: {}.", reference.time_s,
+                             ranking),
+                 within);
+  page.tiles(tiles);
+}
+
 std::vector<std::string> row_cells(const SourceTrack& track, const SourceInstant& at,
                                    const SourceComparison& with) {
   return {track.label,
@@ -43,16 +93,30 @@ void add_table(HtmlReport& page, const ValidatedBed& bed) {
              rows);
 }
 
+/// One colour a source in every figure: its place among the sources.
+int colour_of(const ValidatedBed& bed, const std::string& label) {
+  std::vector<std::string> labels;
+  for (const auto& track : bed.tracks)
+    if (std::find(labels.begin(), labels.end(), track.label) == labels.end()) labels.push_back(track.label);
+  return static_cast<int>(std::find(labels.begin(), labels.end(), label) - labels.begin());
+}
+
+/// Of the last step of each ladder.
 void add_curves(HtmlReport& page, const ValidatedBed& bed) {
   Chart temperature{"Mean particle temperature", "time, s", "T, K", {}, false, false};
-  Chart flux{"Mean flux received, at the instants compared", "time, s", "q, W/m²", {}, true, false};
-  for (const auto& track : bed.tracks) {
-    temperature.series.push_back({track.label, track.curve_time_s, track.curve_temperature_K, {}, false});
+  Chart flux{"Mean flux received, at the instants compared", "time, s", "q, W/m²", {}, false, false};
+  for (std::size_t k = 0; k < bed.tracks.size(); ++k) {
+    const auto& track = bed.tracks[k];
+    if (!is_last_step(bed, k)) continue;
+    Series curve{track.label, track.curve_time_s, track.curve_temperature_K, {}, false};
     Series points{track.label, {}, {}, {}, true};
+    curve.colour = points.colour = colour_of(bed, track.label);
     for (const auto& at : track.at) {
       points.x.push_back(at.time_s);
       points.y.push_back(at.mean_flux_W_m2);
+      points.error.push_back(mean_flux_error(at));
     }
+    temperature.series.push_back(curve);
     flux.series.push_back(points);
   }
   page.chart(temperature);
@@ -94,6 +158,7 @@ void add_speed(HtmlReport& page, const ValidatedBed& bed, bool over_run) {
     auto at = std::find_if(chart.series.begin(), chart.series.end(),
                            [&](const Series& s) { return s.label == track.label; });
     if (at == chart.series.end()) at = chart.series.insert(at, Series{track.label, {}, {}, {}, true});
+    at->colour = colour_of(bed, track.label);
     at->x.push_back(x);
     at->y.push_back(std::max(least_pct, over_run ? with.bias_pct : with.own_rms_pct));
     at->error.push_back(with.rms_error_pct);
@@ -111,8 +176,7 @@ std::string own_bias(const ValidatedBed& bed) {
     if (bed.tracks[k].label == "paths" && is_last_step(bed, k)) {
       const auto& path = bed.tracks[k].at.front();
       const auto& reference = bed.tracks.front().at.front();
-      const double error = path.flux_noise_W_m2 /
-                           std::sqrt(static_cast<double>(std::max<std::size_t>(1, path.flux_W_m2.size())));
+      const double error = mean_flux_error(path);
       text += fmt::format(" Against paths its mean flux at {:g} s is {:+.2f} ± {:.2g} % off.", path.time_s,
                           100 * (reference.mean_flux_W_m2 / path.mean_flux_W_m2 - 1),
                           100 * error / std::abs(path.mean_flux_W_m2));
@@ -182,6 +246,7 @@ void write_validation_report(const std::filesystem::path& file, const std::strin
   for (const auto& bed : beds) {
     page.heading(fmt::format("{}: {} particles, solid fraction {:.3f}", bed.name, bed.particle_count,
                              bed.solid_fraction));
+    add_head(page, bed);
     page.paragraph(fmt::format(
         "Reference: {}. Its particle fluxes are known to {:.2g} % (rms, of the mean flux).",
         bed.tracks.front().label,
@@ -193,6 +258,7 @@ void write_validation_report(const std::filesystem::path& file, const std::strin
     add_speed(page, bed, false);
     add_speed(page, bed, true);
   }
+  page.provenance_of_this_process();
   page.write(file);
 }
 

@@ -1,13 +1,20 @@
 #include "dem/page/html_report.h"
 
 #include <fmt/core.h>
+#include <omp.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <ctime>
+#include <fstream>
+#include <iterator>
 
 #include "dem/base/constants.h"
 #include "dem/base/files/text_file.h"
 #include "dem/base/program.h"
+#include "dem/base/stated_number.h"
 #include "dem/page/page_assets.h"
 #include "dem/page/page_data.h"
 
@@ -15,10 +22,69 @@ namespace granrad {
 
 namespace {
 
+/// "12.3 ± 0.4", "+1.2 %", "1e-3": what stays on one line, at the right.
+bool is_number(const std::string& cell) {
+  const std::size_t sign = cell.starts_with('+') || cell.starts_with('-') ? 1 : 0;
+  constexpr std::size_t longest = 26;
+  return cell.size() > sign && std::isdigit(static_cast<unsigned char>(cell[sign])) && cell.size() <= longest;
+}
+
+/// A long name may be broken behind its parts.
+std::string breakable(const std::string& text) {
+  constexpr std::size_t short_name = 12;
+  std::string out;
+  for (const char c : escape_html(text)) {
+    out += c;
+    if (c == '_' && text.size() > short_name) out += "<wbr>";
+  }
+  return out;
+}
+
 std::string cells(const std::vector<std::string>& row, const char* tag) {
   std::string out = "<tr>";
-  for (const auto& cell : row) out += fmt::format("<{0}>{1}</{0}>", tag, escape_html(cell));
+  for (const auto& cell : row)
+    out += is_number(cell) ? fmt::format("<{0} class='n'>{1}</{0}>", tag, escape_html(cell))
+                           : fmt::format("<{0}>{1}</{0}>", tag, breakable(cell));
   return fmt::format("{}</tr>\n", out);
+}
+
+/// Of a column whose cells are numbers, the header stands at the right as well.
+std::string header_cells(const std::vector<std::string>& header,
+                         const std::vector<std::vector<std::string>>& rows) {
+  std::string out = "<tr>";
+  for (std::size_t k = 0; k < header.size(); ++k) {
+    const bool numbers = std::any_of(rows.begin(), rows.end(),
+                                     [k](const auto& row) { return k < row.size() && is_number(row[k]); });
+    out += fmt::format("<th{}>{}</th>", numbers ? " class='n'" : "", breakable(header[k]));
+  }
+  return fmt::format("{}</tr>\n", out);
+}
+
+/// The words of this process as a shell would read them.
+std::string own_command() {
+  std::ifstream in("/proc/self/cmdline", std::ios::binary);
+  std::string words((std::istreambuf_iterator<char>(in)), {}), line, word;
+  for (const char c : words) {
+    if (c != '\0') {
+      word += c;
+      continue;
+    }
+    const bool plain =
+        !word.empty() && word.find_first_of(" '\"\\$[]{}*?;&|<>()#!~`\t\n") == std::string::npos;
+    if (line.empty()) word = std::filesystem::path(word).filename().string();
+    line += fmt::format("{}{}", line.empty() ? "" : " ", plain ? word : fmt::format("'{}'", word));
+    word.clear();
+  }
+  return line;
+}
+
+std::string date_of_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32] = "";
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
 }
 
 /// A histogram as steps: the density of each bin from its lower border, 0 from the last border on.
@@ -49,6 +115,11 @@ std::string figure(const std::string& title, const char* kind, const std::string
 }
 
 }  // namespace
+
+Tile tile(const std::string& label, const std::string& unit, double value, double error) {
+  const StatedNumber number = stated(value, error);
+  return {label, number.value, number.error, unit};
+}
 
 HtmlReport::HtmlReport(std::string title) : title_(std::move(title)) {}
 
@@ -86,7 +157,8 @@ void HtmlReport::tiles(const std::vector<Tile>& tiles) {
 void HtmlReport::table(const std::vector<std::string>& header,
                        const std::vector<std::vector<std::string>>& rows) {
   end_charts();
-  body_ += fmt::format("<div class='scroll'><table>\n<thead>{}</thead>\n<tbody>\n", cells(header, "th"));
+  body_ +=
+      fmt::format("<div class='scroll'><table>\n<thead>{}</thead>\n<tbody>\n", header_cells(header, rows));
   for (const auto& row : rows) body_ += cells(row, "td");
   body_ += "</tbody></table></div>\n";
 }
@@ -132,6 +204,15 @@ void HtmlReport::bed(const std::string& title, const BedPicture& picture) {
 void HtmlReport::provenance(const std::vector<std::pair<std::string, std::string>>& lines) {
   for (const auto& [what, text] : lines)
     if (!text.empty()) provenance_ += fmt::format("<br>{}: {}", escape_html(what), escape_html(text));
+}
+
+void HtmlReport::provenance_of_this_process() {
+  char host[256] = "";
+  gethostname(host, sizeof host - 1);
+  provenance({{"command", own_command()},
+              {"host", host},
+              {"date", date_of_now()},
+              {"threads", fmt::format("{}", omp_get_max_threads())}});
 }
 
 void HtmlReport::write(const std::filesystem::path& file) const {

@@ -16,6 +16,7 @@ struct Series {
   bool points = false;  ///< markers instead of a line
   bool steps = false;   ///< each value holds until the next x
   bool filled = false;  ///< the area below is shaded
+  int colour = -1;      ///< number of its colour, so that one thing has one colour everywhere; -1: its place
 };
 
 struct Chart {
@@ -30,6 +31,8 @@ struct Tile {
   std::string label, value, error{},
       unit{};  ///< error: one standard error with the digits of the value, or ""
 };
+/// With two digits of the error (stated_number.h).
+Tile tile(const std::string& label, const std::string& unit, double value, double error);
 
 /// A bed to turn and slice.
 struct BedPicture {
@@ -61,6 +64,8 @@ class HtmlReport {
   void bed(const std::string& title, const BedPicture& picture);
   /// Last lines: where the numbers come from ("command", "granrun run ..."; "threads", "2").
   void provenance(const std::vector<std::pair<std::string, std::string>>& lines);
+  /// The same of this process: command, host, date, threads.
+  void provenance_of_this_process();
   void write(const std::filesystem::path& file) const;  ///< temporary name, then rename; throws IoError
 
  private:

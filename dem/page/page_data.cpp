@@ -67,7 +67,8 @@ std::string chart_json(const Chart& chart) {
                       {"error", numbers(s.error)},
                       {"points", s.points},
                       {"steps", s.steps},
-                      {"filled", s.filled}});
+                      {"filled", s.filled},
+                      {"colour", s.colour}});
   Json json{{"title", chart.title}, {"x_label", chart.x_label}, {"y_label", chart.y_label},
             {"log_x", chart.log_x}, {"log_y", chart.log_y},     {"series", series}};
   if (chart.window) json["window"] = {chart.window->first, chart.window->second};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/base/stated_number.h"
 #include "dem/page/html_report.h"
 #include "raytrace/exact.h"
 
@@ -13,7 +14,32 @@ namespace granrad {
 namespace {
 
 std::string with_error(double value, const std::vector<double>& errors, std::size_t k) {
-  return k < errors.size() ? fmt::format("{:.5g} ± {:.1g}", value, errors[k]) : fmt::format("{:.5g}", value);
+  return k < errors.size() ? stated(value, errors[k]).text() : fmt::format("{:.5g}", value);
+}
+
+/// What the table came to: its worst row.
+void add_head(HtmlReport& report, const std::vector<RowFit>& rows) {
+  double pp = 0, pw = 0, held_out = 0, closure = 0;
+  std::size_t snapshots = 0, fewest = rows.empty() ? 0 : rows.front().origins.size();
+  for (const auto& row : rows) {
+    pp = std::max(pp, row.pp.rmse);
+    pw = std::max(pw, row.pw.rmse);
+    held_out = std::max(held_out, row.pp.held_out_rmse);
+    if (std::abs(row.row.statistics.closure_mean) > std::abs(closure))
+      closure = row.row.statistics.closure_mean;
+    snapshots += row.origins.size();
+    fewest = std::min(fewest, row.origins.size());
+  }
+  report.verdict(fewest < 2 ? "A row was made of one snapshot: the errors of its coefficients are too small."
+                            : fmt::format("{} solid fractions from {} snapshots, {} or more each.",
+                                          rows.size(), snapshots, fewest),
+                 fewest >= 2);
+  std::vector<Tile> tiles = {{"rms of fit minus traced F, pairs, worst row", fmt::format("{:.2e}", pp)},
+                             {"the same, particle to wall", fmt::format("{:.2e}", pw)},
+                             {"row sums minus 1, worst row", fmt::format("{:+.2g}", 100 * closure), "", "%"}};
+  if (held_out > 0)
+    tiles.insert(tiles.begin() + 1, {"on snapshots held out, pairs", fmt::format("{:.2e}", held_out)});
+  report.tiles(tiles);
 }
 
 void coefficient_table(HtmlReport& report, const std::vector<RowFit>& rows, bool walls,
@@ -50,19 +76,22 @@ constexpr double smallest_on_log_axis = 1e-7;  ///< below, a view factor is noth
 
 /// Traced means with the curve through them, one colour a solid fraction.
 Chart curves(const std::vector<RowFit>& rows, bool walls, bool logarithmic) {
-  Chart chart{.title = walls ? "Particle to wall" : "Particle to particle",
+  Chart chart{.title = fmt::format("{}{}", walls ? "Particle to wall" : "Particle to particle",
+                                   logarithmic ? ", logarithmic" : ""),
               .x_label = walls ? "h / d, centre to plane over diameter" : "d*, centre distance over diameter",
               .y_label = walls ? "F_pw" : "F_pp",
               .series = {},
               .log_x = logarithmic,
               .log_y = logarithmic};
+  int colour = 0;
   for (const auto& row : rows) {
     const auto& fit = walls ? row.pw : row.pp;
     Series traced{.label = fmt::format("traced, {:.3f}", row.row.solid_fraction),
                   .x = {},
                   .y = {},
                   .error = {},
-                  .points = true};
+                  .points = true,
+                  .colour = colour++};
     for (const auto& bin : fit.bins) {
       if (logarithmic && bin.mean < smallest_on_log_axis) continue;
       traced.x.push_back(bin.distance);
@@ -71,9 +100,14 @@ Chart curves(const std::vector<RowFit>& rows, bool walls, bool logarithmic) {
     }
     chart.series.push_back(traced);
   }
+  colour = 0;
   for (const auto& row : rows) {
     const auto& fit = walls ? row.pw : row.pp;
-    Series line{.label = fmt::format("fit, {:.3f}", row.row.solid_fraction), .x = {}, .y = {}, .error = {}};
+    Series line{.label = fmt::format("fit, {:.3f}", row.row.solid_fraction),
+                .x = {},
+                .y = {},
+                .error = {},
+                .colour = colour++};
     for (const auto& bin : fit.bins) {
       if (logarithmic && bin.fitted < smallest_on_log_axis) continue;
       line.x.push_back(bin.distance);
@@ -94,10 +128,8 @@ Chart residuals(const RowFit& row, bool walls) {
               .series = {}};
   Series mean{
       .label = "traced mean − fit, one standard error", .x = {}, .y = {}, .error = {}, .points = true};
-  Series scatter{.label = "scatter of single values at this distance (noise-free, one sigma)",
-                 .x = {},
-                 .y = {},
-                 .error = {}};
+  Series scatter{
+      .label = "scatter of single values, one sigma, without noise", .x = {}, .y = {}, .error = {}};
   for (const auto& bin : fit.bins) {
     if (bin.count < 2) continue;
     mean.x.push_back(bin.distance);
@@ -124,6 +156,7 @@ void closure_table(HtmlReport& report, const std::vector<RowFit>& rows) {
 void write_fit_report(const std::filesystem::path& file, const CorrelationTable& table,
                       const std::vector<RowFit>& rows) {
   HtmlReport report(table.title.empty() ? "View factor correlation" : table.title);
+  add_head(report, rows);
   report.paragraph(describe(table.form) +
                    ". Unweighted least squares over all pairs, invisible ones included.");
   report.paragraph(
@@ -142,6 +175,7 @@ void write_fit_report(const std::filesystem::path& file, const CorrelationTable&
   report.paragraph(
       "Row sums of the particles with this table on the snapshots it was fitted to, before any closing.");
   closure_table(report, rows);
+  report.provenance_of_this_process();
   report.write(file);
 }
 

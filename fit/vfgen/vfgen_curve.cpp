@@ -6,6 +6,7 @@
 #include "dem/base/error.h"
 #include "dem/base/files/csv.h"
 #include "dem/base/files/text_file.h"
+#include "dem/base/stated_number.h"
 #include "fit/fitting/curve_fit.h"
 #include "fit/vfgen/vfgen_commands.h"
 
@@ -53,7 +54,7 @@ int run_curve(const CurveCommand& command, Verbosity verbosity) {
   if (verbosity != Verbosity::quiet) {
     fmt::print("{} = {}\n", command.y, curve_formula(fit));
     for (std::size_t k = 0; k < fit.coefficient.size(); ++k)
-      fmt::print("  {} = {:.6g} +- {:.2g}\n", names[k], fit.coefficient[k], fit.standard_error[k]);
+      fmt::print("  {} = {}\n", names[k], stated(fit.coefficient[k], fit.standard_error[k]).text(" +- "));
     fmt::print("  R2 {:.5f}, rms {:.3g}, {} points\n", fit.r_squared, fit.rmse, fit.points);
   }
   return exit_ok;

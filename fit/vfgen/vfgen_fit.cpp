@@ -2,6 +2,7 @@
 
 #include "dem/base/error.h"
 #include "dem/base/program.h"
+#include "dem/base/stated_number.h"
 #include "fit/fitting/fit_report.h"
 #include "fit/fitting/fit_table.h"
 #include "fit/trace/view_factor_samples.h"
@@ -38,7 +39,7 @@ void print_coefficients(const CorrelationTable& table) {
       const auto& error = pairs ? row.statistics.pp_standard_error : row.statistics.pw_standard_error;
       std::string line = fmt::format("  {:.4f} {}", row.solid_fraction, pairs ? "pp" : "pw");
       for (std::size_t k = 0; k < names.size(); ++k)
-        line += fmt::format("  {} = {:.5g} +- {:.2g}", names[k], value[k], error[k]);
+        line += fmt::format("  {} = {}", names[k], stated(value[k], error[k]).text(" +- "));
       fmt::print("{}\n", line);
     }
 }

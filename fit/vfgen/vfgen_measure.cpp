@@ -8,6 +8,7 @@
 #include "dem/base/error.h"
 #include "dem/base/files/text_file.h"
 #include "dem/base/program.h"
+#include "dem/base/stated_number.h"
 #include "dem/page/html_report.h"
 #include "fit/vfgen/vfgen_commands.h"
 #include "raytrace/slab/extinction.h"
@@ -23,19 +24,38 @@ void put(nlohmann::ordered_json& json, const std::string& name, const Estimate& 
 }
 
 void line(const char* what, const Estimate& e, const char* unit) {
-  fmt::print("  {:<34}{:>12.5g} +- {:<9.2g} {}\n", what, e.value, e.error, unit);
+  const StatedNumber number = stated(e.value, e.error);
+  fmt::print("  {:<34}{:>12} +- {:<9} {}\n", what, number.value, number.error, unit);
 }
 
 void write_page(const std::filesystem::path& file, const MeasureCommand& command,
-                const Extinction& extinction, const nlohmann::ordered_json& json) {
-  HtmlReport page("Radiation in the bed of " + command.snapshot.string());
+                const Extinction& extinction, const std::optional<ExchangeFactor>& exchange,
+                std::size_t particles) {
+  HtmlReport page("Radiation in the bed of " + command.snapshot.filename().string());
+  const auto& beta = extinction.coefficient_per_m;
+  std::vector<Tile> tiles = {tile("extinction coefficient", "1/m", beta.value, beta.error),
+                             tile("mean free path", "diameters", extinction.mean_free_path_d.value,
+                                  extinction.mean_free_path_d.error)};
+  if (exchange)
+    tiles.push_back(tile("exchange factor F", "", exchange->factor.value, exchange->factor.error));
+  page.tiles(tiles);
+  page.paragraph(fmt::format(
+      "{} particles, solid fraction {:.4f} by the points that fell into the void. Errors are one standard error.",
+      particles, extinction.solid_fraction_void));
   std::vector<std::vector<std::string>> rows;
-  for (const auto& [key, value] : json.items())
-    if (value.is_number() && !key.ends_with("_error"))
-      rows.push_back(
-          {key, fmt::format("{:.5g}", value.get<double>()),
-           json.contains(key + "_error") ? fmt::format("{:.2g}", json[key + "_error"].get<double>()) : ""});
-  page.table({"", "value", "standard error"}, rows);
+  const auto row = [&](const char* what, const Estimate& e, const char* unit) {
+    const StatedNumber number = stated(e.value, e.error);
+    rows.push_back({what, number.value, number.error, unit});
+  };
+  row("extinction coefficient", beta, "1/m");
+  row("mean free path", extinction.mean_free_path_m, "m");
+  row("mean free path", extinction.mean_free_path_d, "diameters");
+  row("mean cosine of diffuse scattering (−4/9 for spheres)", extinction.scattering_cosine, "");
+  if (exchange) {
+    row("exchange factor F, k_r = 4 F d σ T³", exchange->factor, "");
+    row("flux between the plates, of σ (T_hot⁴ − T_cold⁴)", exchange->flux, "");
+  }
+  page.table({"quantity", "value", "standard error", "unit"}, rows);
   Chart chart{.title = "Transmittance from points in the void",
               .x_label = "distance, m",
               .y_label = "part that goes on",
@@ -50,6 +70,7 @@ void write_page(const std::filesystem::path& file, const MeasureCommand& command
   for (double s : law.x) law.y.push_back(std::exp(-extinction.coefficient_per_m.value * s));
   chart.series.push_back(law);
   page.chart(chart);
+  page.provenance_of_this_process();
   page.write(file);
 }
 
@@ -96,7 +117,7 @@ int run_measure(const MeasureCommand& command, Verbosity verbosity) {
   }
   if (!command.folder.empty()) {
     write_text_file(command.folder / "measure.json", json.dump(1) + "\n");
-    write_page(command.folder / "report.html", command, extinction, json);
+    write_page(command.folder / "report.html", command, extinction, exchange, read.enclosure.sphere_count());
     if (verbosity != Verbosity::quiet) fmt::print("{}\n", (command.folder / "report.html").string());
   }
   return exit_ok;

@@ -1,6 +1,7 @@
 """Pages of the programs, opened in headless Chromium at three widths: no script fails, every figure is drawn, nothing is
-cut off at the side and no texts overlap. Usage: pages_in_browser.py BIN SOURCE
-Meant to catch: a missing bracket in page.js; a canvas of no height; a table wider than the page.
+cut off at the side and no texts overlap; printed, too, and in the dark. Usage: pages_in_browser.py BIN SOURCE
+Meant to catch: a missing bracket in page.js; a canvas of no height; a table wider than the page (planted: cells that are
+never broken); letters of the dark on white paper.
 """
 import pathlib
 import re
@@ -8,6 +9,8 @@ import shutil
 import subprocess
 import sys
 import tempfile
+
+from make_pages import make
 
 BIN, SOURCE = map(pathlib.Path, sys.argv[1:3])
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -24,6 +27,9 @@ addEventListener('load', () => setTimeout(() => {
     if (figure.granrad && !/<(polyline|circle)/.test(figure.granrad.svg())) faults.push('SVG without data');
   }
   if (root.scrollWidth > root.clientWidth + 1) faults.push('wider than the window by ' + (root.scrollWidth - root.clientWidth));
+  for (const table of document.querySelectorAll('.scroll'))
+    if (table.scrollWidth > table.clientWidth + 1) faults.push('cut off by ' + (table.scrollWidth - table.clientWidth) + ': ' + table.textContent.trim().slice(0, 30));
+  if (!/command|computed by/.test(document.querySelector('footer').textContent)) faults.push('says not where it comes from');
   const texts = [...document.querySelectorAll('h1, h2, p, .tile b, .tile span, figcaption, td, th, .tools > *')]
     .filter(e => e.textContent.trim()).map(e => [e, e.getBoundingClientRect()]).filter(([, r]) => r.width && r.height);
   for (let i = 0; i < texts.length; ++i)
@@ -45,14 +51,14 @@ addEventListener('load', () => setTimeout(() => {
 </script></body>"""
 
 
-def run(*command):
-    subprocess.run([str(c) for c in command], check=True, capture_output=True)
-
-
-def faults_of(page, width, folder):
-    checked = folder / f"checked_{width}.html"
-    checked.write_text(page.read_text().replace("</body>", CHECK))
-    dom = subprocess.run([BROWSER, "--headless", "--no-sandbox", "--disable-gpu", f"--window-size={width},1200",
+def faults_of(page, width, folder, dark=False, printed=False):
+    checked = folder / "checked.html"
+    text = page.read_text().replace("</body>", CHECK)
+    if printed:  # the rules of print, on a window as wide as a page of A4 between its margins
+        text = text.replace("@media print", "@media all")
+    checked.write_text(text)
+    theme = ["--blink-settings=preferredColorScheme=0"] if dark else []
+    dom = subprocess.run([BROWSER, *theme, "--headless", "--no-sandbox", "--disable-gpu", f"--window-size={width},1200",
                           "--virtual-time-budget=8000", f"--user-data-dir={folder}/profile", "--dump-dom", checked.as_uri()],
                          capture_output=True, text=True, timeout=120).stdout
     found = re.search(r'data-faults="([^"]*)"', dom)
@@ -65,19 +71,12 @@ def main():
         return 77
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        run(BIN / "granrun", "run", SOURCE / "data/scenes/static_phi007.toml", "-o", folder / "case", "--set",
-            "scene.end_time_s=0.5", "--set", "output.every_s=0.02", "--set", "radiation.source=paths", "-q")
-        run(BIN / "granrun", "report", folder / "case", "-q")
-        (folder / "claims.csv").write_text("id,quantity,class,place,claim,unit,reference,uncertainty,tolerance_pct,ours,why\n"
-                                           "1,h,A,there,itself,,1,,1,{a:h_wp_W_m2K} / {a:h_wp_W_m2K},\n2,h,A,there,no,,2,,1,{a:h_wp_W_m2K} / {a:h_wp_W_m2K},so\n")
-        (folder / "study.toml").write_text(f"[study]\nscene = '{SOURCE}/data/scenes/static_phi007.toml'\nset = ['scene.end_time_s=0.2', "
-                                           "'output.every_s=0.02', 'radiation.source=paths']\n[[case]]\nname = 'a'\n[claims]\nfile = 'claims.csv'\n")
-        run(BIN / "granrun", "study", folder / "study.toml", "-o", folder / "study", "-q")
         bad = 0
-        for page in [folder / "case" / "report.html", folder / "study" / "report.html"]:
-            for width in (700, 1000, 1400):
-                faults = faults_of(page, width, folder)
-                print(f"{page.name} at {width}: {faults if faults != '[]' else 'sound'}")
+        for page in make(BIN, SOURCE, folder / "pages"):
+            ways = [(700, {}), (1000, {"dark": True}), (1400, {}), (718, {"printed": True})]
+            for width, way in ways:
+                faults = faults_of(page, width, folder, **way)
+                print(f"{page.relative_to(folder)} at {width} {' '.join(way)}: {faults if faults != '[]' else 'sound'}")
                 bad += faults != "[]"
     return bad != 0
 

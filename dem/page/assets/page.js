@@ -3,6 +3,7 @@
 (() => {
   const css = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const colour = k => css("--c" + k % 8);
+  const colour_of = (series, k) => colour(series[k].colour >= 0 ? series[k].colour : k);
   const made = (tag, text, parent) => {
     const element = document.createElement(tag);
     if (text) element.textContent = text;
@@ -61,7 +62,7 @@
       const known = points.filter(p => p[2] > 0);
       if (!known.length || !u.series[s + 1].show) return;
       const low = v => u.scales.y.distr === 3 ? Math.max(v, u.scales.y.min) : v;
-      ctx.strokeStyle = ctx.fillStyle = colour(s);
+      ctx.strokeStyle = ctx.fillStyle = colour_of(series, s);
       const at = (v, scale) => u.valToPos(v, scale, true);
       if (series[s].points) {
         ctx.lineWidth = 1.2 * ratio;
@@ -107,7 +108,7 @@
     out += `<text x="${box.x + box.w / 2}" y="${box.y + box.h + 34}" text-anchor="middle">${escape_xml(chart.x_label)}</text>`;
     out += `<text transform="translate(12,${box.y + box.h / 2}) rotate(-90)" text-anchor="middle">${escape_xml(chart.y_label)}</text>`;
     shown.forEach((points, s) => {
-      const c = colour(s);
+      const c = colour_of(chart.series, s);
       if (chart.series[s].points) for (const p of points) out += `<circle cx="${px(p[0])}" cy="${py(p[1])}" r="3" fill="${c}"/>`;
       else if (points.length) out += `<polyline fill="none" stroke="${c}" stroke-width="1.8" points="${points.map(p => px(p[0]) + "," + py(p[1])).join(" ")}"/>`;
       for (const p of points) if (p[2] > 0 && chart.series[s].points) out += `<path stroke="${c}" d="M${px(p[0])} ${py(p[1] - p[2])}V${py(p[1] + p[2])}"/>`;
@@ -139,14 +140,21 @@
       });
       const y_axis = axis(chart.y_label, logs.y);
       y_axis.size = (u, values) => values ? Math.max(50, 22 + 7.2 * Math.max(...values.map(v => (v || "").length))) : 50;
+      // Bars and bands belong to what is shown.
+      const with_bars = (u, low, high) => {
+        const min = u.scales.x.min ?? -Infinity, max = u.scales.x.max ?? Infinity;
+        for (const [x, y, e] of shown.flat())
+          if (e > 0 && x >= min && x <= max) { low = Math.min(low, y - e); high = Math.max(high, y + e); }
+        return low == null ? [0, 1] : uPlot.rangeNum(low, high, 0.1, true);
+      };
       plot = new uPlot({
         width, height: Math.round(Math.min(340, Math.max(220, width * 0.55))),
-        scales: {x: {time: false, distr: logs.x ? 3 : 1}, y: {distr: logs.y ? 3 : 1}},
+        scales: {x: {time: false, distr: logs.x ? 3 : 1}, y: {distr: logs.y ? 3 : 1, range: logs.y ? undefined : with_bars}},
         axes: [axis(chart.x_label, logs.x), y_axis],
         series: [{label: chart.x_label, value: (u, v) => number_text(v)}, ...chart.series.map((s, k) => ({
-          label: s.label, stroke: colour(k), width: s.points ? 0 : 2, spanGaps: true,
-          fill: s.filled ? colour(k) + "22" : undefined, paths: s.points ? () => null : s.steps ? uPlot.paths.stepped({align: 1}) : undefined,
-          points: {show: s.points || s.x.length < 2, size: s.x.length > 500 ? 3 : 7, fill: colour(k)},
+          label: s.label, stroke: colour_of(chart.series, k), width: s.points ? 0 : 2, spanGaps: true,
+          fill: s.filled ? colour_of(chart.series, k) + "22" : undefined, paths: s.points ? () => null : s.steps ? uPlot.paths.stepped({align: 1}) : undefined,
+          points: {show: s.points || s.x.length < 2, size: s.x.length > 500 ? 3 : 7, fill: colour_of(chart.series, k)},
           value: (u, v) => number_text(v)}))],
         legend: {live: true}, cursor: {drag: {x: true, y: true, uni: 20}},
         hooks: {drawClear: [u => window_shade(u, chart.window)], draw: [u => with_errors(u, shown, chart.series)]},
@@ -169,7 +177,7 @@
     figure.granrad = {svg: () => svg_of(plot, chart, shown), plot: () => plot};
     draw();
     new ResizeObserver(() => { if (plot && Math.abs(figure.clientWidth - 32 - plot.width) > 8 && figure.clientWidth > 292) draw(); }).observe(figure);
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
+    for (const query of ["(prefers-color-scheme: dark)", "print"]) matchMedia(query).addEventListener("change", draw);
   };
 
   // A scale that reads the same in grey and for eyes that see fewer colours: dark blue to yellow.
