@@ -15,6 +15,7 @@
 #include "coupling/measure/measure_command.h"
 #include "coupling/study/run_study.h"
 #include "coupling/validate/validate.h"
+#include "dem/base/command_line.h"
 #include "dem/base/error.h"
 #include "dem/base/program.h"
 #include "dem/ranks/ranks.h"
@@ -233,13 +234,15 @@ void add_export(CLI::App& app, Arguments& a, Body& body) {
 }
 
 int granrun(int argc, char** argv) {
-  CLI::App app{"granrun: granular flows heated by conduction and radiation"};
+  CLI::App app{"granrun: granular flows heated by conduction and radiation", "granrun"};
   app.set_version_flag("--version", fmt::format("granrun {} ({})", program_version(), program_git_sha()));
   app.require_subcommand(1);
+  set_manners(app);
   app.footer(
-      "Exit codes: 0 ok, 1 numerical failure, 2 usage or input, 3 file cannot be read or written,\n"
-      "4 threshold missed, 75 wall time reached (checkpoint saved), 129/130/143 hung up, interrupted, terminated\n"
-      "(checkpoint saved). SIGUSR1 saves a checkpoint and the run goes on.");
+      "Exit codes: 0 ok, 1 numerical failure, 2 usage or input,\n"
+      "3 file cannot be read or written, 4 threshold missed,\n"
+      "75 wall time reached, 129/130/143 hung up, interrupted, terminated (these\n"
+      "save a checkpoint). SIGUSR1 saves a checkpoint and the run goes on.");
   Arguments a;
   Body body;
   for (auto* add :
@@ -251,7 +254,7 @@ int granrun(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? exit_ok : exit_bad_input;
+    return usage_exit(app, error, argc, argv);
   }
   if (const auto name = app.get_subcommands().front()->get_name(); name != "run")
     refuse_several_ranks("granrun " + name);

@@ -262,8 +262,8 @@ void add_claims(HtmlReport& page, const StudyOutcome& outcome) {
                   "a statement without a number.",
                   rows.size(), agree, differ, not_possible, told));
   page.filtered_table(
-      {"number", "quantity", "place", "claim", "reference", "ours", "unit", "difference", "verdict", "why"}, rows,
-      {8, 1, 2});
+      {"number", "quantity", "place", "claim", "reference", "ours", "unit", "difference", "verdict", "why"},
+      rows, {8, 1, 2});
 }
 
 void add_fits(HtmlReport& page, const StudyOutcome& outcome) {

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "dem/base/command_line.h"
 #include "dem/base/error.h"
 #include "dem/base/program.h"
 #include "dem/base/toml/key_reference.h"
@@ -122,6 +123,7 @@ int run(int argc, char** argv) {
   CLI::App app("View factors of particle beds by ray tracing, and correlations fitted to them.", "vfgen");
   app.set_version_flag("--version", fmt::format("vfgen {} ({})", program_version(), program_git_sha()));
   app.require_subcommand(1);
+  set_manners(app);
   app.fallthrough();
   bool quiet = false, verbose = false;
   auto* q = app.add_flag("-q,--quiet", quiet, "only results and errors");
@@ -141,7 +143,7 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? exit_ok : exit_bad_input;
+    return usage_exit(app, error, argc, argv);
   }
   if (const auto name = app.get_subcommands().front()->get_name(); name != "trace")
     refuse_several_ranks("vfgen " + name);

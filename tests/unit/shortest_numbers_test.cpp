@@ -1,5 +1,5 @@
 // Requirement: the effective scene shows numbers as a person would write them, and reads back to the same bits.
-#include "dem/base/shortest_numbers.h"
+#include "dem/base/toml/shortest_numbers.h"
 
 #include <gtest/gtest.h>
 

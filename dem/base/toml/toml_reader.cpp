@@ -5,8 +5,8 @@
 #include <sstream>
 
 #include "dem/base/error.h"
-#include "dem/base/shortest_numbers.h"
 #include "dem/base/suggestion.h"
+#include "dem/base/toml/shortest_numbers.h"
 #include "dem/base/toml/toml_reader_state.h"
 
 namespace granrad {

@@ -1,4 +1,4 @@
-#include "dem/base/shortest_numbers.h"
+#include "dem/base/toml/shortest_numbers.h"
 
 #include <fmt/core.h>
 
