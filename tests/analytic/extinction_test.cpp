@@ -30,7 +30,7 @@ Enclosure random_overlapping(std::size_t n, double radius, std::uint64_t seed) {
 
 }  // namespace
 
-// To plant: a start inside a sphere taken as one in the void: beta 60 % too large. Normals of the far side: cosine +4/9.
+// Planted: a start inside a sphere taken as one in the void (beta 8 times too large); normals of the far side (cosine off by .5).
 TEST(Extinction, OfOverlappingSpheresIsExponentialWithTheirCrossSection) {
   const std::size_t n = 4000;
   const double radius = 0.05, beta = n * pi * radius * radius;  // the solid takes 88 %: 2 in 3 overlap

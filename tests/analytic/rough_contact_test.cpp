@@ -26,7 +26,7 @@ TEST(RoughContact, IsTheConstrictionAloneWhereTheSurfaceIsSmooth) {
   EXPECT_NEAR(rough_contact_conductance(smooth, k, 0, 0.05, 1e-5), 2 * k * 1e-5, 1e-5 * 2 * k * 1e-5);
 }
 
-// To plant: the slope left out of h_c; the pressure over the softened disc.
+// Planted: the slope left out of h_c.
 TEST(RoughContact, ARoughJointFollowsTheLoadToThePower095) {
   RoughSurface rough = steel();
   rough.roughness_m = 1e-3;  // the joint decides: the constriction adds 1e-4

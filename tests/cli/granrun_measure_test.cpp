@@ -56,7 +56,7 @@ nlohmann::json measured(Scratch& scratch, const std::string& arguments) {
 
 }  // namespace
 
-// Every sphere of a cubic lattice of 4 x 4 chains carries the same heat: k = G d / d^2 exactly. To plant: planes counted
+// Every sphere of a cubic lattice of 4 x 4 chains carries the same heat: k = G d / d^2 exactly. Planted: planes counted
 // once a pair instead of by the part between them.
 TEST(GranrunMeasure, ChainsConductAsTheirContacts) {
   Scratch scratch;

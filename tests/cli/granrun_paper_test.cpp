@@ -52,7 +52,7 @@ bool has_verdict(const std::string& judged, const std::string& id, const std::st
 
 }  // namespace
 
-// Rows of the validation book that take a second, in CI. Planted: the lens of a wall for that of a pair (V11i differs).
+// Rows of the validation book that take a second, in CI. Planted: 28.2 for 28.15 in the claims (V11i differs).
 TEST(GranrunPaper, QuickRowsOfTheBookAgree) {
   Scratch scratch;
   const auto folder = scratch.root / "book", book = scratch.root / "book.md";

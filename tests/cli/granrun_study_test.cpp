@@ -84,7 +84,7 @@ TEST(GranrunStudy, EveryKindOfVariationBecomesOneRow) {
   EXPECT_NE(content(study.folder / "report.html").find("Every case"), std::string::npos);
 }
 
-// To plant: identity without the scene: the second study keeps the old rows.
+// Planted: identity without the scene: the second study keeps the old rows.
 TEST(GranrunStudy, AChangedSceneInputOrVersionRunsAnewAndKeepsTheOld) {
   SmallStudy study;
   ASSERT_EQ(study.run(two_cases).code, 0);
@@ -125,7 +125,7 @@ TEST(GranrunStudy, AChangedSceneInputOrVersionRunsAnewAndKeepsTheOld) {
   EXPECT_NE(study.run(with_table).err.find("case table: finished"), std::string::npos);
 }
 
-// To plant: a throw of the first bad case ends the study.
+// Planted: a throw of the first bad case ends the study.
 TEST(GranrunStudy, AnImpossibleCaseFailsAloneAndIsNamed) {
   SmallStudy study;
   const auto outcome = study.run(
