@@ -68,6 +68,9 @@ std::string claims_book(const StudyOutcome& outcome) {
   text += "\n## Notes, and the command that makes each number\n\n";
   for (const auto& j : outcome.judged) {
     text += fmt::format("- **{}** {} {}", j.claim.id, j.claim.place, j.claim.why);
+    if (j.claim.ours.find("{fit ") != std::string::npos)
+      text += fmt::format(" A fit over its group: `granrun study data/studies/{} -o out/{}`.",
+                          outcome.study.file.filename().string(), outcome.study.file.stem().string());
     std::set<std::string> told;
     for (const auto& point : j.points)
       if (told.insert(point).second)

@@ -32,6 +32,7 @@ Measured evaluate(const std::string& formula, const Quantities& quantities) {
     const auto used = parser.GetUsedVar();  // a copy: evaluating changes the parser's own
     for (const auto& [name, variable] : used) {
       const double error = quantities.at(name).error;
+      if (std::isnan(error)) result.error = error;  // not known: nor is that of the result
       if (!std::isfinite(error) || error <= 0) continue;
       const double value = *variable;
       *variable = value + error;
@@ -39,7 +40,8 @@ Measured evaluate(const std::string& formula, const Quantities& quantities) {
       *variable = value - error;
       const double below = parser.Eval();
       *variable = value;
-      result.error = std::hypot(result.error, 0.5 * (above - below));
+      result.error =
+          std::isnan(result.error) ? result.error : std::hypot(result.error, 0.5 * (above - below));
     }
     return result;
   } catch (const mu::ParserError& error) {

@@ -13,7 +13,7 @@ using Quantities = std::map<std::string, Measured>;
 /// Value of a formula (muParser: + - * / ^, sqrt, exp, ln, erfc, log10, min, max, a < b ? c : d ...) of named
 /// quantities, and its error: half the change of the value when a quantity moves by its error to both sides,
 /// added in squares over the quantities, which are taken as independent. Names may hold dots. nan when a
-/// quantity it uses has no value. Throws InputError (syntax, unknown name).
+/// quantity it uses has no value; an error nan when one has an unknown error. Throws InputError (syntax, unknown name).
 Measured evaluate(const std::string& formula, const Quantities& quantities);
 
 /// As above, of text with {NAME} for quantities whose names are no words; `find` gives them and throws

@@ -30,13 +30,14 @@ Quantities of_run(const fs::path& folder) {
   const auto derive = [&](const std::string& name, const std::string& formula) {
     if (!all.count(name)) all[name] = evaluate(formula, all);
   };
-  derive("Nu_ss", "Nu_d * h_ss_W_m2K / h_wp_W_m2K");
-  derive("Nu_sfs", "Nu_d * h_sfs_W_m2K / h_wp_W_m2K");
-  derive("Nu_rad", "Nu_d * h_rad_W_m2K / h_wp_W_m2K");
-  derive("Nu_cond", "Nu_d * (h_ss_W_m2K + h_sfs_W_m2K) / h_wp_W_m2K");
-  derive("share_ss_pct", "100 * h_ss_W_m2K / h_wp_W_m2K");
-  derive("share_sfs_pct", "100 * h_sfs_W_m2K / h_wp_W_m2K");
-  derive("share_rad_pct", "100 * h_rad_W_m2K / h_wp_W_m2K");
+  // Of the history's own columns: their errors know that parts and whole move together.
+  derive("Nu_ss", "Nu_d_ss");
+  derive("Nu_sfs", "Nu_d_sfs");
+  derive("Nu_rad", "Nu_d_rad");
+  derive("Nu_cond", "Nu_d_ss + Nu_d_sfs");
+  derive("share_ss_pct", "100 * share_ss");
+  derive("share_sfs_pct", "100 * share_sfs");
+  derive("share_rad_pct", "100 * share_rad");
   return all;
 }
 
@@ -138,11 +139,12 @@ void add_varied(StudyRow& row) {
   }
 }
 
-/// Cases of another kind may lack what the formula needs; a formula that suits no case is wrong.
+/// Cases of another kind may lack what the formula needs; a formula that suits no case of a whole study is wrong.
 void add_column(const StudyColumn& column, std::vector<StudyRow>& rows) {
   std::string problem;
-  bool any = false;
+  bool any = false, whole = true;
   for (auto& row : rows) {
+    if (row.finished == 0) whole = false;
     if (row.finished == 0) continue;
     try {
       row.quantity[column.name] = evaluate(column.formula, row.quantity);
@@ -151,7 +153,8 @@ void add_column(const StudyColumn& column, std::vector<StudyRow>& rows) {
       problem = error.what();
     }
   }
-  if (!any && !problem.empty()) throw InputError(fmt::format("[[column]] {}: {}", column.name, problem));
+  if (!any && whole && !problem.empty())
+    throw InputError(fmt::format("[[column]] {}: {}", column.name, problem));
 }
 
 }  // namespace

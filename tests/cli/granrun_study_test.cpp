@@ -54,13 +54,14 @@ TEST(GranrunStudy, EveryKindOfVariationBecomesOneRow) {
       "seeds = [1, 2]\n[[group.case]]\nname = \"slow\"\n"
       "[[group]]\nname = \"frozen\"\n[[group.case]]\nname = \"goes_on\"\nstart = \"Tw-700_small\"\n"
       "set = [\"dem.engine=none\", \"particles.diameter_m='0.6 mm'\"]\nunset = [\"dem.step_s\"]\n"
+      "[[group]]\nname = \"fine\"\n[[group.case]]\nname = \"rows\"\nset = [\"output.every_s=0.0004\"]\n"
       "[[probe]]\nname = \"T_at_wall\"\naxis = \"y\"\nfrom_diameters = 0\nto_diameters = 1\n"
       "[[probe]]\nname = \"N\"\nwhat = \"count\"\naxis = \"y\"\nfrom_m = 0\nto_m = 1\n"
       "[[column]]\nname = \"double_h\"\nformula = \"2 * h_wp_W_m2K\"\n";
   const auto outcome = study.run(text);
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const auto table = rows(study.folder / "study.csv");
-  ASSERT_EQ(table.size(), 6u);
+  ASSERT_EQ(table.size(), 7u);
   EXPECT_EQ(table[0].at("case"), "Tw-700_small");
   for (const char* wall : {"walls.y_min.temperature_K", "walls.y_max.temperature_K"}) {
     EXPECT_EQ(table[0].at(wall), "700") << "both keys change together";
@@ -72,6 +73,9 @@ TEST(GranrunStudy, EveryKindOfVariationBecomesOneRow) {
   EXPECT_GT(std::stod(table[4].at("h_wp_W_m2K_stderr")), 0) << "the scatter between seeds";
   EXPECT_NEAR(std::stod(table[4].at("mass_flow_in_kg_s")), 0.0005, 0.0005);
   EXPECT_EQ(table[5].at("status"), "finished") << "begins with the last frame of another case";
+  // Planted: Nu_d h_rad / h_wp with all three taken as independent: an error 36 times as large.
+  EXPECT_GT(std::stod(table[6].at("Nu_rad_stderr")), 0);
+  EXPECT_EQ(table[6].at("Nu_rad_stderr"), table[6].at("Nu_d_rad_stderr"));
   for (const auto& row : table) {
     EXPECT_NEAR(std::stod(row.at("double_h")), 2 * std::stod(row.at("h_wp_W_m2K")), 1e-5);
     EXPECT_NEAR(std::stod(row.at("share_ss_pct")) + std::stod(row.at("share_sfs_pct")) +

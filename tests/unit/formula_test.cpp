@@ -23,6 +23,9 @@ TEST(Formula, SyntaxAndUnknownNamesAreInputErrors) {
   EXPECT_THROW(evaluate("1 +", {}), InputError);
   EXPECT_THROW(evaluate("nothing", {}), InputError);
   EXPECT_TRUE(std::isnan(evaluate("x", {{"x", {std::nan(""), 0}}}).value));
+  const auto unknown = evaluate("x + y", {{"x", {1, std::nan("")}}, {"y", {2, 0.1}}});
+  EXPECT_EQ(unknown.value, 3);
+  EXPECT_TRUE(std::isnan(unknown.error)) << "not 0: that would be certain";
 }
 
 TEST(Formula, BracesNameWhatIsNoWord) {
