@@ -254,7 +254,7 @@ TEST(GranrunStudy, ClaimsAndFitsAreJudgedAndSweepIsItsOldName) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_TRUE(fs::exists(study.folder / "sweep.csv"));
   const auto judged = content(study.folder / "claims.csv");
-  EXPECT_NE(judged.find("1,ratio,A,here,\"h with itself, twice\",,2,0,2,0,0,agrees"), std::string::npos)
+  EXPECT_NE(judged.find("1,ratio,A,here,\"h with itself, twice\",,2,0,2,,0,agrees"), std::string::npos)
       << judged;
   EXPECT_NE(judged.find(",differs,planted"), std::string::npos) << judged;
   EXPECT_NE(judged.find(",uncertainty unknown,"), std::string::npos) << judged;
