@@ -25,7 +25,7 @@ if(HELP2MAN)
     endif()
     add_custom_command(OUTPUT ${page} DEPENDS ${program}
       COMMAND ${CMAKE_COMMAND} -E make_directory ${PROJECT_BINARY_DIR}/man
-      COMMAND ${HELP2MAN} --no-info --name=${does} --output=${page} $<TARGET_FILE:${program}>
+      COMMAND ${HELP2MAN} --no-info --help-option=--help-all --name=${does} --output=${page} $<TARGET_FILE:${program}>
       VERBATIM)
     list(APPEND granrad_man ${page})
   endforeach()

@@ -238,6 +238,7 @@ int granrun(int argc, char** argv) {
   app.set_version_flag("--version", fmt::format("granrun {} ({})", program_version(), program_git_sha()));
   app.require_subcommand(1);
   set_manners(app);
+  app.set_help_all_flag("--help-all", "help of every subcommand");
   app.footer(
       "Exit codes: 0 ok, 1 numerical failure, 2 usage or input,\n"
       "3 file cannot be read or written, 4 threshold missed,\n"

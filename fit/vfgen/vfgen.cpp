@@ -124,6 +124,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", fmt::format("vfgen {} ({})", program_version(), program_git_sha()));
   app.require_subcommand(1);
   set_manners(app);
+  app.set_help_all_flag("--help-all", "help of every subcommand");
   app.fallthrough();
   bool quiet = false, verbose = false;
   auto* q = app.add_flag("-q,--quiet", quiet, "only results and errors");
