@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # ./do demo | test | test-long | paper [--quick] | validate [--quick] | gates | tidy | format | docs | package |
-#      bench [trace|dem|heat|case|front] [--quick | --full]
+#      bench [trace|dem|heat|case|front|scale|load|forecast] [--quick | --full]
 # Each command takes a bare Debian 12 all the way: missing packages, configuration, build, run.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
@@ -50,6 +50,7 @@ usage() {
               case: the whole moving bed of the paper beside LIGGGHTS' flow alone;
               front: every exchange source with a ladder of rays (--quick: 3 min; --full: four emissivities);
               scale: the parts of a run on one and two ranks, and a model of more
+              forecast: what granrun check foresees beside what a run takes
   hard-cases  makes docs/hard-cases.md: every exchange source on the cases that break others
 EOF
 }
@@ -213,12 +214,12 @@ EOF
     which=() options=()
     for word in "$@"; do
       case $word in
-        trace | dem | heat | case | front | scale | load) which+=("$word") ;;
+        trace | dem | heat | case | front | scale | load | forecast) which+=("$word") ;;
         --quick | --full) options=("$word") ;;
         *) usage >&2; exit 2 ;;
       esac
     done
-    ((${#which[@]})) || which=(trace dem heat case front scale load)
+    ((${#which[@]})) || which=(trace dem heat case front scale load forecast)
     [[ ${options[*]} != --full || ${which[*]} == front ]] || { echo "--full is for front" >&2; exit 2; }
     set_up
     install_missing liggghts lammps
@@ -236,8 +237,14 @@ EOF
         "$root/tests/bench/load_bench.py" "$build/bin/granrun" "$root/data/scenes" "$build/bench" "${options[@]}"
         continue
       fi
-      build "${name}_bench"
       mkdir -p "$build/bench"
+      if [[ $name == forecast ]]; then
+        build granrun
+        say "bench forecast"
+        python3 "$root/tests/bench/forecast.py" "$build/bin/granrun" "$root/data/scenes" "$build/bench" "${options[@]}"
+        continue
+      fi
+      build "${name}_bench"
       say "bench $name"
       "$build/tests/bench/${name}_bench" "${options[@]}" "$build/bench"
     done

@@ -1,6 +1,7 @@
 # tests of coupling and of traced paths: granrad_test(shelf/name libraries...)
 granrad_test(analytic/gas_lens granrad_coupling nlohmann_json::nlohmann_json)
 granrad_test(physics/moving_bed_table granrad_coupling)
+granrad_test(physics/only_what_is_needed granrad_coupling)
 granrad_test(analytic/conduction granrad_coupling)
 granrad_test(analytic/collision_heat granrad_coupling granrad_dem)
 granrad_test(analytic/radiosity granrad_coupling Eigen3::Eigen)

@@ -183,7 +183,8 @@ void print_forecast(const Case& c, Simulation& simulation, const RunOptions& opt
   std::string list;
   for (const auto& one : sources)
     list += fmt::format("{}{} {}", list.empty() ? "" : ", ", one.source, duration(one.seconds));
-  fmt::print("  computing for 1 % standard error of the wall heat at one update: {}\n", list);
+  fmt::print("  computing for {:g} % standard error of the wall heat at one update, cheapest first: {}\n",
+             100 * sources.front().error, list);
 }
 
 }  // namespace

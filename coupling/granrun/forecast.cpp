@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 
 #include "coupling/simulation/heat_model.h"
+#include "coupling/validate/update_cost.h"
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
 #include "raytrace/paths/path_tracer.h"
@@ -17,13 +19,20 @@ namespace {
 
 constexpr double trial_s = 0.5;                 // for flow and conduction
 constexpr double usual_particle_steps_s = 4e6;  // of the flow on one core, settled or flowing beds
-constexpr double rays_of_a_trial = 5e5;
+constexpr double rays_of_a_trial = 4e6, walks_of_a_trial = 1e6;
 constexpr std::size_t most_particles_tried = 20000;
 constexpr double bytes_per_particle = 700;  // columns, lists, contacts and conductances of a dense bed
 constexpr double frame_bytes_per_particle = 330;
 
 double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Without the longest tenth, in which other programs had their turn.
+double undisturbed_mean(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  values.resize(values.size() - values.size() / 10);
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 /// Mean number of particles over the run, of those there are now.
@@ -42,15 +51,18 @@ double mean_count(const Case& c, const Bed& bed) {
   return now;
 }
 
-/// The radiation of the case with so few rays that one update takes about a second at most.
-Case with_few_rays(const Case& c, const Bed& bed, double& times_more) {
+Case with_rays(const Case& c, double rays) {
   Case trial = c;
-  const bool paths = c.heat.radiation.kind == RadiationKind::paths;
-  const double rays = c.heat.radiation.rays * (paths ? 1 : static_cast<double>(bed.size()));
-  times_more = std::max(1.0, rays / rays_of_a_trial);
-  trial.heat.radiation.rays = std::max(paths ? 2000.0 : 20.0, c.heat.radiation.rays / times_more);
-  times_more = c.heat.radiation.rays > 0 ? c.heat.radiation.rays / trial.heat.radiation.rays : 1;
+  trial.heat.radiation.rays = rays;
   return trial;
+}
+
+/// Rays (walks) that one trial may take, of those the case asks for.
+double rays_to_try(const Case& c, const Bed& bed) {
+  const bool paths = c.heat.radiation.kind == RadiationKind::paths;
+  const double most =
+      paths ? walks_of_a_trial : std::max(20.0, rays_of_a_trial / static_cast<double>(bed.size()));
+  return std::min(c.heat.radiation.rays, most);
 }
 
 /// Seconds of one radiation update: in all, and of that what its rays do not change.
@@ -58,28 +70,31 @@ struct UpdateSeconds {
   double all = 0, repeated = 0;
 };
 
-double seconds_of_a_draw(const Case& c, const Bed& bed, int threads) {
-  HeatModel heat(c, threads);
-  heat.start(bed);
-  const double start = now_s();
-  heat.draw_radiation(bed, 0);
-  return now_s() - start;
-}
-
+/// View factors made anew: a fixed part and one in proportion to the rays, from two trials.
 UpdateSeconds seconds_of_an_update(const Case& c, const Bed& bed, int threads) {
   const RadiationSettings& radiation = c.heat.radiation;
   if (radiation.kind == RadiationKind::none || bed.size() == 0) return {};
-  double times_more = 1;
-  Case trial = with_few_rays(c, bed, times_more);
-  const double few_s = seconds_of_a_draw(trial, bed, threads);
+  const double many = rays_to_try(c, bed), with_many = update_cost(with_rays(c, many), bed, threads).wall_s;
+  if (radiation.rays <= 0) return {with_many, with_many};
   const bool paths = radiation.kind == RadiationKind::paths;
   const bool shared = paths || radiation.kind == RadiationKind::embree ||
                       (radiation.kind == RadiationKind::lines && radiation.order == 0);
-  if (!shared || radiation.rays <= 0) return {few_s * times_more, few_s * times_more};
-  const double few_rays = trial.heat.radiation.rays;
-  trial.heat.radiation.rays = std::min(few_rays, paths ? 2.0 * path_batches : 1.0);
-  const double least_s = std::min(few_s, seconds_of_a_draw(trial, bed, threads));
-  return {least_s + (few_s - least_s) * times_more, least_s};
+  const double few = std::min(many, paths ? 2.0 * path_batches : shared ? 1.0 : many / 3);
+  const double with_few = std::min(with_many, update_cost(with_rays(c, few), bed, threads).wall_s);
+  const double per_ray = many > few ? (with_many - with_few) / (many - few) : 0;
+  const double all = with_many + per_ray * (radiation.rays - many);
+  return {all, shared ? with_few : all};
+}
+
+/// Of the updates of a frozen bed after the first: its view factors are known, radiosities are solved.
+double seconds_of_a_solve(const Case& c, const Bed& bed, int threads) {
+  const Case trial = with_rays(c, rays_to_try(c, bed));
+  HeatModel heat(trial, threads);
+  heat.start(bed);
+  heat.draw_radiation(bed, 0);
+  const double start = now_s();
+  heat.draw_radiation(bed, 0);
+  return now_s() - start;
 }
 
 }  // namespace
@@ -95,11 +110,14 @@ Forecast forecast(const Case& c, Simulation& simulation, int threads) {
   if (plan.ticks_per_radiation > 0) {
     const bool anew =
         moves || c.heat.radiation.kind == RadiationKind::paths;  // a frozen bed keeps its view factors
-    cost.radiation_updates = anew ? ticks / static_cast<double>(plan.ticks_per_radiation) : 1;
+    const double updates = std::ceil(ticks / static_cast<double>(plan.ticks_per_radiation));
+    cost.radiation_updates = anew ? updates : 1;
     const double times =
         cost.radiation_updates * (bed.size() > 0 ? count / static_cast<double>(bed.size()) : 1);
     const UpdateSeconds update = seconds_of_an_update(c, bed, threads);
-    cost.radiation_s = update.all * times, cost.radiation_repeated_s = update.repeated * times;
+    const double solves = anew || bed.size() == 0 ? 0 : (updates - 1) * seconds_of_a_solve(c, bed, threads);
+    cost.radiation_s = update.all * times + solves;
+    cost.radiation_repeated_s = update.repeated * times + solves;
   }
   const double expected_tick_s = static_cast<double>(bed.size()) *
                                  static_cast<double>(moves ? plan.steps_per_tick : 1) /
@@ -110,15 +128,17 @@ Forecast forecast(const Case& c, Simulation& simulation, int threads) {
     Simulation trial(still, threads);
     trial.start();
     trial.advance();  // lists are made, threads started
-    const PartSeconds first = trial.seconds();
-    double done = 0;
-    for (const double start = now_s(); now_s() - start < trial_s && !trial.finished(); ++done)
+    std::vector<double> flow, conduction;
+    for (const double start = now_s(); now_s() - start < trial_s && !trial.finished();) {
+      const PartSeconds before = trial.seconds();
       trial.advance();
-    if (done == 0) return cost;
-    const double more =
-        ticks * plan.tick_s / (done * trial.plan().tick_s) * count / static_cast<double>(bed.size());
-    cost.flow_s = (trial.seconds().flow - first.flow) * more;
-    cost.conduction_s = (trial.seconds().conduction - first.conduction) * more;
+      flow.push_back(trial.seconds().flow - before.flow);
+      conduction.push_back(trial.seconds().conduction - before.conduction);
+    }
+    if (flow.empty()) return cost;
+    const double more = ticks * count / static_cast<double>(bed.size());
+    cost.flow_s = undisturbed_mean(flow) * more * plan.tick_s / trial.plan().tick_s;
+    cost.conduction_s = undisturbed_mean(conduction) * more;
     cost.measured = true;
   } else if (moves) {
     cost.flow_s = count * ticks * static_cast<double>(plan.steps_per_tick) / usual_particle_steps_s;
@@ -135,7 +155,7 @@ std::vector<SourceCost> source_costs(const Case& c, const Bed& bed, int threads)
   std::vector<SourceCost> costs;
   if (c.heat.radiation.kind == RadiationKind::none || bed.size() == 0 || bed.size() > most_particles_tried)
     return costs;
-  constexpr double wanted = 0.01;
+  const double wanted = c.heat.radiation.error > 0 ? c.heat.radiation.error : 0.01;
   for (const auto& [kind, rays] : {std::pair{RadiationKind::paths, 20000.0},
                                    {RadiationKind::embree, 100.0},
                                    {RadiationKind::lines, 400.0}}) {
@@ -151,7 +171,7 @@ std::vector<SourceCost> source_costs(const Case& c, const Bed& bed, int threads)
       const double spent = now_s() - start, heat_W = std::abs(drawn.all.isothermal_wall_heat_W),
                    error = drawn.all.isothermal_wall_heat_error_W;
       if (heat_W > 0 && error > 0)
-        costs.push_back({to_string(kind), spent * std::pow(error / heat_W / wanted, 2)});
+        costs.push_back({to_string(kind), spent * std::pow(error / heat_W / wanted, 2), wanted});
     } catch (const Error&) {  // this source does not serve the bed
     }
   }

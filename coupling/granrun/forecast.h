@@ -20,14 +20,15 @@ struct Forecast {
   double total_s() const { return flow_s + conduction_s + radiation_s + output_s; }
 };
 
-/// Runs a few heat steps of the bed at time 0, about two seconds, and scales them to the run: flow and conduction with
-/// the mean number of particles a feed will bring, radiation with its rays (it is tried with few). Changes `simulation`.
+/// Runs a few heat steps of the bed at time 0, a few seconds, and scales them to the run: flow and conduction with
+/// the mean number of particles a feed will bring, radiation with its rays (many are foreseen from two trials with fewer). Changes `simulation`.
 Forecast forecast(const Case& c, Simulation& simulation, int threads);
 
-/// What one source needs for heats of the walls with 1 % standard error, by one trial on a bed.
+/// What one source needs for heats of the walls with a standard error of `error` (radiation.error, else 1 %), by one trial
+/// on a bed. Its bias (one radiosity for each surface, where that is) comes on top.
 struct SourceCost {
   std::string source;
-  double seconds = 0;
+  double seconds = 0, error = 0.01;
 };
 
 /// Of every source that serves this bed and tells its error, cheapest first; none without radiating walls or for more

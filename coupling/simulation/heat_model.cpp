@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "coupling/heat/heat_limits.h"
 #include "coupling/heat/heat_step.h"
@@ -29,6 +30,17 @@ double hottest_radiating_K(const Bed& bed, const Enclosure& enclosure, double su
     if (wall.role == WallRole::isothermal || wall.role == WallRole::open)
       hottest = std::max(hottest, wall.temperature_K);
   return hottest;
+}
+
+/// Whether all that radiates is equally warm: nothing is exchanged, whatever sees what.
+bool is_isothermal(const RadiativeState& state) {
+  std::optional<double> power;
+  for (std::size_t s = 0; s < state.emissivity.size(); ++s) {
+    if (!state.radiates(s)) continue;
+    if (power && *power != state.emissive_power_W_m2[s]) return false;
+    power = state.emissive_power_W_m2[s];
+  }
+  return true;
 }
 
 /// Where nothing says it, the walls close (check_radiation saw to it) and no ray asks.
@@ -63,9 +75,14 @@ HeatModel::ParticleHeat HeatModel::draw_radiation(const Bed& bed, std::uint64_t 
 
 HeatModel::ParticleHeat HeatModel::draw_radiation(const Bed& bed, const Enclosure& enclosure,
                                                   const RadiativeState& state, std::uint64_t draw) {
-  if (!source_) source_ = make_radiation_source(case_.heat.radiation, case_.flow, threads_);
   ParticleHeat result;
-  result.all = source_->net_heat(enclosure, state, draw);
+  if (is_isothermal(state)) {
+    result.all.heat_W.assign(enclosure.surface_count(), 0);
+    result.all.standard_error_W.assign(enclosure.surface_count(), 0);
+  } else {
+    if (!source_) source_ = make_radiation_source(case_.heat.radiation, case_.flow, threads_);
+    result.all = source_->net_heat(enclosure, state, draw);
+  }
   if (state.implicit)
     result.limited_share = keep_within_bounds(bed, enclosure, state, interval_s_, result.all);
   const auto to_particles = [&](const std::vector<double>& by_surface) {
