@@ -46,7 +46,7 @@ TEST(CurveFit, ExactPointsGiveTheirCoefficients) {
   EXPECT_EQ(curve_formula(log).substr(0, 9), "0.39 * ln");
 }
 
-// To plant: errors without the residual variance, off by the noise 0.05: no coverage.
+// Planted: errors without the residual variance, off by the noise 0.05: no coverage.
 TEST(CurveFit, StatedErrorsCoverTheTruth) {
   const auto x = between(0.1, 1, 12);
   int inside[2] = {0, 0};

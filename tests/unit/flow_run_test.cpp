@@ -30,7 +30,7 @@ class History : public testing::Test {
 };
 
 // A filling channel, exponential with 0.5 s: the drift between the quarters after 2 s is 3 %, after 4 s 0.4 %.
-// To plant: the drift of the whole time instead of the second half -> never steady.
+// Planted: the drift of the whole time instead of the second half -> never steady.
 TEST_F(History, IsSteadyWhenTheDriftHasStopped) {
   const auto filling = [](double t) { return 0.4 * (1 - std::exp(-t / 0.5)); };
   EXPECT_FALSE(judged(1, filling, 0.5).reached);
