@@ -5,15 +5,13 @@
 #include <numeric>
 
 #include "dem/base/error.h"
-#include "dem/base/program.h"
+#include "raytrace/balancing.h"
 #include "raytrace/exchange.h"
 
 namespace granrad {
 
 namespace {
 
-constexpr double row_tolerance = 1e-12;
-constexpr int most_sweeps = 20000;
 constexpr std::size_t worth_threads = 100000;  // pairs; below, waking threads costs more than the work
 
 /// Entry (i, j) of a sparse matrix, or -1.
@@ -158,10 +156,6 @@ double row_sum(const ExchangeAreas& x, std::size_t i) {
                          x.value.begin() + x.pattern.row_begin[i + 1], 0.0);
 }
 
-bool closes(const ExchangeAreas& x, std::size_t i) {
-  return i + 1 < x.area_m2.size() && x.area_m2[i] > 0;
-}
-
 void require_rows(const ExchangeAreas& x) {
   for (std::size_t i = 0; i < x.area_m2.size(); ++i)
     if (closes(x, i) && !(row_sum(x, i) > 0))
@@ -173,34 +167,6 @@ double closure_defect(const ExchangeAreas& x) {
   for (std::size_t i = 0; i < x.area_m2.size(); ++i)
     if (closes(x, i)) worst = std::max(worst, std::abs(row_sum(x, i) / x.area_m2[i] - 1));
   return worst;
-}
-
-/// Symmetric Sinkhorn: the factors x_i that make every row of x_i X_ij x_j sum to its area.
-std::vector<double> balancing_factors(const ExchangeAreas& x, int& sweeps) {
-  const std::size_t n = x.area_m2.size();
-  std::vector<double> factor(n, 1), ratio(n, 1);
-  for (sweeps = 0; sweeps < most_sweeps; ++sweeps) {
-    stop_if_interrupted();
-#pragma omp parallel for schedule(dynamic, 256) if (x.value.size() > worth_threads)
-    for (std::size_t i = 0; i < n; ++i) {
-      if (!closes(x, i)) continue;
-      double sum = 0;
-      for (std::int64_t k = x.pattern.row_begin[i]; k < x.pattern.row_begin[i + 1]; ++k)
-        sum += x.value[k] * factor[static_cast<std::size_t>(x.pattern.column[k])];
-      ratio[i] = x.area_m2[i] / (factor[i] * sum);
-    }
-    double worst = 0;
-    for (const double r : ratio) worst = std::isfinite(r) ? std::max(worst, std::abs(r - 1)) : HUGE_VAL;
-    if (worst <= 0.1 * row_tolerance || (worst <= row_tolerance && sweeps > most_sweeps / 2)) return factor;
-    if (!std::isfinite(worst)) break;
-    for (std::size_t i = 0; i < n; ++i) factor[i] *= std::sqrt(ratio[i]);
-  }
-  const auto worst = std::max_element(ratio.begin(), ratio.end(),
-                                      [](double a, double b) { return std::abs(a - 1) < std::abs(b - 1); });
-  throw NumericalError(
-      fmt::format("closure: row {} stays {:.1e} away from its area after {} sweeps (it sees only "
-                  "surfaces that cannot fill it: more rays, or another enclosure)",
-                  worst - ratio.begin(), std::abs(*worst - 1), sweeps));
 }
 
 /// Closing to first order: X_ij + e_ij becomes X_ij + e_ij + X_ij (d_i + d_j), d_i = -(noise of the sum of

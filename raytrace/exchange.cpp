@@ -33,6 +33,25 @@ ExchangeAreas one_way_estimate(const HitCounts& counts) {
   return estimate;
 }
 
+ReplicateSamples replicate_samples(const HitCounts& counts) {
+  const double replicates = static_cast<double>(counts.parts.size());
+  const auto density = [&](std::size_t s) {
+    return counts.area_m2[s] > 0 ? static_cast<double>(counts.launched[s]) / counts.area_m2[s] : 0;
+  };
+  ReplicateSamples samples;
+  for (const auto& part : counts.parts) {
+    auto& found = samples.emplace_back();
+    found.reserve(part.size());
+    for (const auto& [from, to, hits] : part) {
+      const auto i = static_cast<std::size_t>(from), j = static_cast<std::size_t>(to);
+      const double share = i == j ? 0.5 : density(i) / (density(i) + density(j));
+      const double x = counts.area_m2[i] * hits * replicates / static_cast<double>(counts.launched[i]);
+      found.push_back({from, to, static_cast<float>(share * x)});
+    }
+  }
+  return samples;
+}
+
 ExchangeAreas restricted(const ExchangeAreas& all, const std::vector<std::int32_t>& kept) {
   if (kept.size() == all.area_m2.size()) return all;
   std::vector<std::int32_t> number(all.area_m2.size(), -1);
@@ -57,9 +76,17 @@ ExchangeAreas restricted(const ExchangeAreas& all, const std::vector<std::int32_
 std::vector<double> zero_hit_bound(const HitCounts& counts) {
   const double thinned = counts.thinning_unit > 1 ? 2 * static_cast<double>(counts.thinning_unit) : 0;
   const double expected = -std::log(0.01) + thinned;
+  const auto lines_together = [&](std::int64_t ends) {
+    return counts.directions > 0 ? static_cast<double>(ends) / (8.0 * static_cast<double>(counts.directions)) : 0;
+  };
+  std::int64_t most_ends = 0;  // of a sphere: a wall meets no more lines together with one
+  for (std::int32_t s = 0; s < counts.spheres; ++s)
+    most_ends = std::max(most_ends, counts.launched[static_cast<std::size_t>(s)]);
   std::vector<double> bound;
-  for (const std::int64_t n : counts.launched)
-    bound.push_back(n > 0 ? std::min(1.0, expected / static_cast<double>(n)) : 1);
+  for (const std::int64_t n : counts.launched) {
+    const double together = std::max(1.0, lines_together(std::min(n, most_ends)));
+    bound.push_back(n > 0 ? std::min(1.0, expected * together / static_cast<double>(n)) : 1);
+  }
   return bound;
 }
 

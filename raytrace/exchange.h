@@ -31,6 +31,12 @@ struct HitCounts {
   std::int64_t leaked = 0;        ///< rays that met the back of a wall or were lost
   double mean_chord_m = 0;        ///< area-weighted mean free length of a ray over all surfaces
   double mean_chord_error_m = 0;  ///< its standard error (binomial sampling)
+  std::int64_t directions = 0;  ///< of all replicates of parallel lines; 0: rays, each of its own direction
+  /// Hits by replicate, where a trace was asked to keep them (TraceOptions::kept_replicates).
+  struct Part {
+    std::int32_t from, to, hits;
+  };
+  std::vector<std::vector<Part>> parts{};  ///< [replicates]
   /// > 1: to respect the memory limit, a pair with h < unit hits was kept with probability h / unit, as
   /// `unit` hits: unbiased, the same draw for both directions of a pair. 1: nothing was thinned.
   std::int64_t thinning_unit = 1;
@@ -46,6 +52,14 @@ struct ExchangeAreas {
   /// merged. Empty: both have the same weight and the same error (symmetric estimates, correlation tables).
   std::vector<double> rays_per_m2{};
 };
+
+/// A share of an exchange area X_ij as one replicate found it: sums over all samples of a replicate are an independent
+/// estimate of sums over all pairs. One-way estimates come with the weight they are merged by.
+struct ReplicateSample {
+  std::int32_t i, j;
+  float x_m2;
+};
+using ReplicateSamples = std::vector<std::vector<ReplicateSample>>;  ///< [replicates]; empty: not kept
 
 /// 0: particle to particle, 1: particle to wall or surroundings, 2: wall to particle, 3: between walls.
 inline std::size_t pair_kind(std::int32_t spheres, std::int32_t from, std::int32_t to) {
@@ -72,6 +86,9 @@ enum class Closure { reciprocal, row_sum };
 /// rays empty.
 ExchangeAreas one_way_estimate(const HitCounts& counts);
 
+/// What the replicates kept in `counts` say of the merged exchange areas, before closure.
+ReplicateSamples replicate_samples(const HitCounts& counts);
+
 /// Closes rows.
 /// reciprocal: merges X_ij and X_ji by inverse variance (weights n_i / A_i: both counts see the same X), then
 /// scales x_i X_ij x_j (symmetric Sinkhorn, x_i <- x_i sqrt(A_i / r_i)) until every row sums to A_i within
@@ -90,7 +107,8 @@ ExchangeAreas restricted(const ExchangeAreas& all, const std::vector<std::int32_
 
 /// 99 % upper bound of F_ij of a surface that no ray of its own hit j with: b_i = m / n_i, at most 1, where m
 /// = -ln 0.01 (Poisson), and 2 thinning_unit more where rare pairs were thinned out. 1 for surfaces without
-/// rays.
+/// rays. Lines of one direction meet a neighbour together: the discs of a pair lie over each other by a quarter on the
+/// mean, so that a quarter of the lines through a disc count as one.
 std::vector<double> zero_hit_bound(const HitCounts& counts);
 
 /// Reduced chi^2 of X_ij - X_ji over the pairs both of whose ends sent rays; 0 when there are none.

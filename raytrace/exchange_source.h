@@ -44,6 +44,7 @@ struct RadiativeHeat {
   double isothermal_wall_heat_W = 0;        ///< given by the walls that radiate to the particles
   double isothermal_wall_heat_error_W = 0;  ///< its standard error
   std::int64_t rays = 0;                    ///< traced for this update
+  std::int64_t lost_rays = 0;               ///< of them that met the back of a wall or did not end
   double closure_correction = 0;            ///< largest row correction, 0 when nothing was closed
 };
 

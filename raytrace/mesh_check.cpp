@@ -2,9 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <tuple>
 #include <utility>
+
+#include "dem/bed/wall_shape.h"
 
 namespace granrad {
 
@@ -40,6 +44,36 @@ MeshCheck check_meshes(const std::vector<Wall>& walls) {
     if (uses.forward + uses.backward == 2 && uses.forward != 1) ++check.turned_edges;
   }
   return check;
+}
+
+bool has_two_sides(const Wall& wall) {
+  constexpr double same = 1e-6;
+  const std::vector<WallFace> faces = faces_of(wall);
+  double size = 0;
+  for (const Vec3& v : wall.vertices) size = std::max(size, norm(v - wall.vertices[0]));
+  // By the plane, told by its distance from a corner and whichever normal: faces that look opposite ways lie together.
+  std::multimap<double, const WallFace*> by_distance;
+  for (const WallFace& face : faces)
+    by_distance.emplace(std::abs(dot(face.vertices[0] - wall.vertices[0], face.normal)), &face);
+  const auto inside = [&](const Vec3& p, const WallFace& face) {
+    for (std::size_t k = 0; k < face.vertices.size(); ++k) {
+      const Vec3 edge = face.vertices[(k + 1) % face.vertices.size()] - face.vertices[k];
+      if (dot(cross(face.normal, edge), p - face.vertices[k]) < 0) return false;
+    }
+    return true;
+  };
+  for (const auto& [distance, face] : by_distance) {
+    Vec3 middle{};
+    for (const Vec3& v : face->vertices) middle += v * (1.0 / static_cast<double>(face->vertices.size()));
+    for (auto other = by_distance.lower_bound(distance - same * size);
+         other != by_distance.end() && other->first <= distance + same * size; ++other) {
+      const WallFace& back = *other->second;
+      if (dot(face->normal, back.normal) < -1 + same && std::abs(dot(middle - back.vertices[0], back.normal)) < same * size &&
+          inside(middle, back))
+        return true;
+    }
+  }
+  return false;
 }
 
 std::string describe(const MeshCheck& check) {

@@ -17,6 +17,9 @@ struct MeshCheck {
 };
 MeshCheck check_meshes(const std::vector<Wall>& walls);
 
+/// Whether a face of the wall lies on another of its own that looks the other way: a thin sheet seen from both sides.
+bool has_two_sides(const Wall& wall);
+
 /// "12 triangles, closed, normals inward", or what is wrong and what comes of it.
 std::string describe(const MeshCheck& check);
 

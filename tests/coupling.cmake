@@ -28,4 +28,5 @@ foreach(test analytic_paths physics_paths physics_paths_extremes physics_radiosi
   target_include_directories(test_${test} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
 endforeach()
 granrad_test(physics/walls_in_one_place granrad_simulation)
+granrad_test(physics/sources_agree granrad_simulation)
 granrad_test(physics/periodic_heat granrad_simulation)

@@ -1,7 +1,9 @@
 #include "coupling/heat/radiosity_source.h"
 
 #include <cmath>
+#include <utility>
 
+#include "coupling/heat/crossing_error.h"
 #include "coupling/heat/radiosity.h"
 #include "raytrace/same_geometry.h"
 
@@ -14,6 +16,18 @@ std::vector<std::int32_t> surfaces_kept(const std::vector<char>& excluded) {
   for (std::size_t s = 0; s < excluded.size(); ++s)
     if (!excluded[s]) kept.push_back(static_cast<std::int32_t>(s));
   return kept;
+}
+
+/// Samples between the rows kept, by their new numbers.
+ReplicateSamples restricted(ReplicateSamples all, const std::vector<std::int32_t>& kept, std::size_t surfaces) {
+  if (kept.size() == surfaces) return all;
+  std::vector<std::int32_t> number(surfaces, -1);
+  for (std::size_t k = 0; k < kept.size(); ++k) number[static_cast<std::size_t>(kept[k])] = static_cast<std::int32_t>(k);
+  for (auto& of_one : all) {
+    std::erase_if(of_one, [&](const ReplicateSample& s) { return number[s.i] < 0 || number[s.j] < 0; });
+    for (auto& s : of_one) s.i = number[s.i], s.j = number[s.j];
+  }
+  return all;
 }
 
 /// First-order variance of the heat that crosses from the surfaces that give to the others.
@@ -38,10 +52,22 @@ void RadiositySource::prepare(const Enclosure& enclosure, const std::vector<char
   if (prepared_ && kept == kept_ && same_geometry(enclosure, enclosure_)) return;
   prepared_ = false;
   report_ = {};
-  areas_ = close(restricted(estimate_(enclosure, geometry_key(enclosure)), kept), closure_, report_);
+  ExchangeEstimate estimate = estimate_(enclosure, geometry_key(enclosure));
+  lost_rays_ = estimate.lost_rays;
+  areas_ = close(restricted(estimate.areas, kept), closure_, report_);
+  replicates_ = restricted(std::move(estimate.replicates), kept, enclosure.surface_count());
   kept_ = std::move(kept);
   enclosure_ = enclosure;
   prepared_ = true;
+}
+
+double RadiositySource::wall_heat_error_W(const std::vector<double>& radiosity_W_m2,
+                                          const std::vector<double>& emissivity,
+                                          const std::vector<char>& gives) const {
+  if (replicates_.size() < 2) return std::sqrt(crossing_variance(areas_, radiosity_W_m2, gives));
+  const std::vector<double> one(gives.begin(), gives.end());
+  return crossing_error_W(areas_, replicates_, radiosity_W_m2,
+                          solve_radiosity(areas_, one, emissivity).radiosity_W_m2);
 }
 
 RadiativeHeat RadiositySource::net_heat(const Enclosure& enclosure, const RadiativeState& state,
@@ -59,6 +85,7 @@ RadiativeHeat RadiositySource::net_heat(const Enclosure& enclosure, const Radiat
   iterations_ = solved.iterations;
 
   RadiativeHeat result;
+  result.lost_rays = std::exchange(lost_rays_, 0);
   result.closure_correction = report_.largest_correction;
   result.heat_W.assign(enclosure.surface_count(), 0);
   const bool with_errors = !solved.standard_error_W.empty();
@@ -69,7 +96,7 @@ RadiativeHeat RadiositySource::net_heat(const Enclosure& enclosure, const Radiat
     if (gives[k]) result.isothermal_wall_heat_W -= solved.heat_W[k];
   }
   if (with_errors)
-    result.isothermal_wall_heat_error_W = std::sqrt(crossing_variance(areas_, solved.radiosity_W_m2, gives));
+    result.isothermal_wall_heat_error_W = wall_heat_error_W(solved.radiosity_W_m2, emissivity, gives);
   return result;
 }
 

@@ -8,6 +8,16 @@
 
 namespace granrad {
 
+/// Exchange areas of an enclosure, one-way or symmetric, before closure, what their replicates found, and how many rays
+/// were lost in tracing them.
+struct ExchangeEstimate {
+  ExchangeAreas areas;
+  ReplicateSamples replicates;  ///< empty: the error of the wall heat comes from the variances of pairs
+  std::int64_t lost_rays = 0;
+  ExchangeEstimate(ExchangeAreas found, ReplicateSamples samples = {}, std::int64_t lost = 0)
+      : areas(std::move(found)), replicates(std::move(samples)), lost_rays(lost) {}
+};
+
 /// Exchange source by view factors and one radiosity per surface: estimate -> close -> solve (the paper's Eqs.
 /// (radiosity) and (Qrad); net-radiation method, Modest, Radiative Heat Transfer, ch. 5).
 /// A wall of emissivity 0 (adiabatic) re-radiates with one radiosity, excluded walls are dropped before
@@ -17,8 +27,8 @@ namespace granrad {
 /// 0.4); PathSource is not.
 class RadiositySource : public ExchangeSource {
  public:
-  /// Exchange areas of an enclosure, one-way or symmetric, before closure; `key` selects random numbers.
-  using Estimate = std::function<ExchangeAreas(const Enclosure&, std::uint64_t key)>;
+  /// `key` selects random numbers.
+  using Estimate = std::function<ExchangeEstimate(const Enclosure&, std::uint64_t key)>;
 
   RadiositySource(Estimate estimate, Closure closure) : estimate_(std::move(estimate)), closure_(closure) {}
   RadiativeHeat net_heat(const Enclosure& enclosure, const RadiativeState& state,
@@ -30,15 +40,19 @@ class RadiositySource : public ExchangeSource {
   int iterations() const { return iterations_; }
 
  private:
+  double wall_heat_error_W(const std::vector<double>& radiosity_W_m2, const std::vector<double>& emissivity,
+                           const std::vector<char>& gives) const;
   void prepare(const Enclosure& enclosure, const std::vector<char>& excluded);
 
   Estimate estimate_;
   Closure closure_;
   ClosureReport report_;
   int iterations_ = 0;
+  std::int64_t lost_rays_ = 0;  ///< of the areas not yet used
   bool prepared_ = false;
   Enclosure enclosure_;             ///< the one `areas_` belong to
   std::vector<std::int32_t> kept_;  ///< surface number of each row of `areas_`
+  ReplicateSamples replicates_;     ///< by rows of `areas_`
   ExchangeAreas areas_;             ///< closed, without excluded walls
 };
 

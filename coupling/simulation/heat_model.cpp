@@ -134,6 +134,7 @@ void HeatModel::radiate(Bed& bed, double interval_s) {
   walls_.hold_radiation(make_enclosure(bed, case_.flow.region), heat.heat_W);
   radiation_.updates += 1;
   radiation_.rays += heat.rays;
+  radiation_.lost_rays += heat.lost_rays;
   radiation_.wall_heat_W = heat.isothermal_wall_heat_W;
   radiation_.missed_W = -sum(heat.heat_W);
   radiation_.error_squared_W2 += heat.isothermal_wall_heat_error_W * heat.isothermal_wall_heat_error_W;
@@ -166,6 +167,7 @@ StateBlock HeatModel::save() const {
   StateBlock block;
   block.integers["updates"] = {radiation_.updates};
   block.integers["rays"] = {radiation_.rays};
+  block.integers["lost_rays"] = {radiation_.lost_rays};
   block.reals["wall_heat_W"] = {radiation_.wall_heat_W};
   block.reals["missed_W"] = {radiation_.missed_W};
   block.reals["error_squared_W2"] = {radiation_.error_squared_W2};
@@ -179,6 +181,7 @@ StateBlock HeatModel::save() const {
 void HeatModel::load(const StateBlock& radiation, const StateBlock& ledger) {
   radiation_.updates = saved_integer(radiation, "updates");
   radiation_.rays = saved_integer(radiation, "rays");
+  radiation_.lost_rays = saved_integer(radiation, "lost_rays");
   radiation_.wall_heat_W = saved_real(radiation, "wall_heat_W");
   radiation_.missed_W = saved_real(radiation, "missed_W");
   radiation_.error_squared_W2 = saved_real(radiation, "error_squared_W2");

@@ -14,6 +14,7 @@ namespace granrad {
 /// Sums over radiation updates, for standard errors and the closure of the books.
 struct RadiationTotals {
   std::int64_t updates = 0, rays = 0;
+  std::int64_t lost_rays = 0;     ///< that met the back of a wall or did not end
   double wall_heat_W = 0;         ///< given by isothermal and open walls at the last update
   double missed_W = 0;            ///< given by walls and got by no particle, held until the next update
   double error_squared_W2 = 0;    ///< sum over updates of the squared standard error of the wall heat

@@ -54,6 +54,7 @@ inline constexpr HistoryColumn history_column_list[] = {
     {"share_sfs", "h_sfs / h_wp"},
     {"share_rad", "h_rad / h_wp"},
     {"heat_out_W", "m c T of what left or was removed"},
+    {"lost_rays", "that met the back of a wall or did not end; more than 1 in 1000 stop the run"},
 };
 
 inline std::span<const HistoryColumn> history_columns() {

@@ -14,6 +14,7 @@
 #include "raytrace/lines/black_line_source.h"
 #include "raytrace/lines/line_plan.h"
 #include "raytrace/lines/line_sweep.h"
+#include "raytrace/mesh_check.h"
 #include "raytrace/paths/path_source.h"
 #include "raytrace/rays/enclosure_check.h"
 #include "raytrace/rays/view_factors.h"
@@ -25,15 +26,21 @@ namespace {
 
 /// Probe rays that leave through closed walls: the rounding of edges.
 constexpr std::int64_t few_open = 2;
-/// Share of the rays that may meet the back of a wall.
+/// Independent sets of rays of an update: enough to know the error of the wall heat to a quarter.
+constexpr int wall_heat_replicates = 8;
+/// Share of the rays that may meet the back of a wall: rounding at edges. Each such ray is counted (lost_rays).
 constexpr double most_leaks = 1e-3;
 
-void refuse_leaks(const HitCounts& counts) {
+/// Before closure, which would share a defect out among the others.
+void require_sound(const Enclosure& enclosure, const HitCounts& counts) {
   const auto rays = std::accumulate(counts.launched.begin(), counts.launched.end(), std::int64_t{0});
   if (static_cast<double>(counts.leaked) > most_leaks * static_cast<double>(rays))
     throw NumericalError(advised(
         fmt::format("radiation: {} of {} rays met the back of a wall", counts.leaked, rays),
         "turn its normals to the particles (flip = true) or let both sides radiate (two_sided = true)"));
+  if (const SelfCheck check = self_check(enclosure, counts, most_leaks); !check.failed.empty())
+    throw NumericalError(advised("radiation: the view factors are not sound: " + check.failed,
+                                 "look for bodies that reach into each other, or take source = paths"));
 }
 
 RadiositySource::Estimate embree_estimate(const RadiationSettings& settings, int threads) {
@@ -42,9 +49,10 @@ RadiositySource::Estimate embree_estimate(const RadiationSettings& settings, int
     options.rays_per_particle = settings.rays;
     options.seed = settings.seed + update;
     options.threads = threads;
+    options.kept_replicates = wall_heat_replicates;
     const HitCounts counts = trace_view_factors(enclosure, options);
-    refuse_leaks(counts);
-    return one_way_estimate(counts);
+    require_sound(enclosure, counts);
+    return ExchangeEstimate(one_way_estimate(counts), replicate_samples(counts), counts.leaked);
   };
 }
 
@@ -63,7 +71,10 @@ RadiositySource::Estimate shading_estimate(const RadiationSettings& settings, in
 
 RadiositySource::Estimate line_estimate(const RadiationSettings& settings, int threads) {
   return [=](const Enclosure& enclosure, std::uint64_t update) {
-    return sweep_exchange_areas(enclosure, line_options(settings, update, threads));
+    ReplicateSamples replicates;
+    ExchangeAreas areas =
+        sweep_exchange_areas(enclosure, line_options(settings, update, threads), nullptr, &replicates);
+    return ExchangeEstimate(std::move(areas), std::move(replicates));
   };
 }
 
@@ -146,6 +157,21 @@ std::string opening_problem(const Scene& scene, const Bed& bed, const EnclosureC
   return then.open > few_open ? said(then, " once the shutters are open") : "";
 }
 
+/// Sources of one radiosity for each wall: light that falls on one side of a sheet would leave from the other.
+std::vector<std::string> sheets_that_join_their_sides(const Enclosure& enclosure) {
+  std::vector<std::string> problems;
+  for (const Wall& wall : enclosure.walls) {
+    const bool reflects = wall.role == WallRole::adiabatic || (wall.role == WallRole::isothermal && wall.emissivity < 1);
+    if (reflects && has_two_sides(wall))
+      problems.push_back(
+          advised(fmt::format("wall {} has two sides and reflects (with one radiosity for both, what falls on the one "
+                              "would leave from the other)",
+                              wall.name),
+                  "use source = paths, or a wall for each side"));
+  }
+  return problems;
+}
+
 }  // namespace
 
 std::vector<std::string> check_radiation(const RadiationSettings& settings, const Scene& scene,
@@ -157,13 +183,18 @@ std::vector<std::string> check_radiation(const RadiationSettings& settings, cons
   if (!known_surroundings_K(scene, surroundings_K))
     if (const auto problem = opening_problem(scene, bed, check); !problem.empty())
       problems.push_back(problem);
+  if (settings.kind == RadiationKind::embree || settings.kind == RadiationKind::shading)
+    for (auto& problem : sheets_that_join_their_sides(enclosure)) problems.push_back(std::move(problem));
   if (!problems.empty()) throw InputError(problems);
   if (bed.size() == 0) return check.notes;
   if (settings.kind == RadiationKind::correlation)
     correlation_exchange_areas(read_correlation(settings.table), enclosure, {});
-  if (settings.kind == RadiationKind::shading) refuse_what_shading_cannot_serve(enclosure);
-  if (settings.kind == RadiationKind::lines)
+  if (settings.kind == RadiationKind::shading) refuse_what_shading_cannot_serve(enclosure, settings.rays);
+  if (settings.kind == RadiationKind::lines) {
+    const LineOptions options = line_options(settings, 0, 1);
+    refuse_wasted_lines(LineScene(enclosure, options.lines_per_disc), options, options.directions);
     sweep_exchange_areas(enclosure, {.directions = 1, .lines_per_disc = 1, .replicates = 2});
+  }
   return check.notes;
 }
 

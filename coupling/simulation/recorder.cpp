@@ -100,6 +100,7 @@ const std::vector<Recorder::MarkColumn> Recorder::mark_columns = {
     {"solid_J", &Mark::solid_J},         {"gas_J", &Mark::gas_J},
     {"radiation_J", &Mark::radiation_J}, {"error_squared_W2", &Mark::error_squared_W2},
     {"updates", &Mark::updates},
+    {"lost_rays", &Mark::lost_rays},
 };
 
 Recorder::Mark Recorder::mark(const Bed& bed, const Flow& flow, const HeatModel& heat) const {
@@ -117,6 +118,7 @@ Recorder::Mark Recorder::mark(const Bed& bed, const Flow& flow, const HeatModel&
   now.radiation_J = received.radiation;
   now.error_squared_W2 = heat.radiation().error_squared_W2;
   now.updates = static_cast<double>(heat.radiation().updates);
+  now.lost_rays = static_cast<double>(heat.radiation().lost_rays);
   now.from_walls_J = heat.walls().given_J();
   return now;
 }
@@ -142,6 +144,7 @@ void Recorder::fill_heats(HistoryRow& row, const Mark& now, bool independent_upd
   row["Q_ss_W"] = (now.solid_J - before_.solid_J) / interval;
   row["Q_sfs_W"] = (now.gas_J - before_.gas_J) / interval;
   row["Q_rad_W"] = (now.radiation_J - before_.radiation_J) / interval;
+  if (case_.heat.radiation.kind != RadiationKind::none) row["lost_rays"] = now.lost_rays - before_.lost_rays;
   if (case_.heat.radiation.kind == RadiationKind::correlation) return;  // a table does not know its error
   const double variance = updates > 0 ? (now.error_squared_W2 - before_.error_squared_W2) / updates : 0;
   row["Q_rad_error_W"] =

@@ -30,7 +30,7 @@ class Recorder {
     double time_s = 0, mean_temperature_K = 0;  ///< 0: no particle in the region
     double mass_in_kg = 0, mass_out_kg = 0, heat_out_J = 0, heat_capacity_out_J_K = 0;
     double solid_J = 0, gas_J = 0, radiation_J = 0;  ///< received by the particles
-    double error_squared_W2 = 0, updates = 0;
+    double error_squared_W2 = 0, updates = 0, lost_rays = 0;
     std::vector<HeatPaths> from_walls_J;
   };
   struct MarkColumn {

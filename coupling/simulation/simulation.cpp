@@ -13,6 +13,7 @@
 #include "dem/base/error.h"
 #include "dem/io/saved_state.h"
 #include "dem/ranks/ranks.h"
+#include "raytrace/rays/enclosure_check.h"
 
 namespace granrad {
 
@@ -98,6 +99,8 @@ void Simulation::start(Bed bed) {
   if (const auto note = outside_note(case_.flow, bed_); !note.empty()) notes_.push_back(note);
   if (auto note = sampled_contacts_note(case_, limits_, plan_); !note.empty())
     notes_.push_back(std::move(note));
+  if (case_.heat.radiation.kind != RadiationKind::none)
+    for (auto& note : turn_meshes_to_particles(bed_, case_.flow.region)) notes_.push_back(std::move(note));
   for (auto& note : check_radiation(case_.heat.radiation, case_.flow, bed_, case_.heat.surroundings_K))
     notes_.push_back(std::move(note));
   heat_.start(bed_);

@@ -16,6 +16,7 @@
 #include "dem/bed/solid_fraction.h"
 #include "dem/bed/wall_shape.h"
 #include "dem/io/snapshot.h"
+#include "raytrace/rays/enclosure_check.h"
 
 namespace granrad {
 
@@ -104,6 +105,7 @@ NamedBed bed_from(const Case& c, const fs::path& snapshot) {
 
 std::vector<NamedBed> choose_beds(const Case& c) {
   std::vector<NamedBed> beds;
+  for (const auto& note : c.flow.notes) fmt::print(stderr, "note: {}\n", note);
   for (const auto& file : c.heat.validate.snapshots) beds.push_back(bed_from(c, file));
   if (beds.empty()) beds.push_back({c.flow.name, Flow(c.flow).first_bed(), c});
   for (const auto& named : beds)
@@ -112,6 +114,9 @@ std::vector<NamedBed> choose_beds(const Case& c) {
           fmt::format("{}: no particles to heat; start the feed filled, or give [particles] file or "
                       "[[validate.snapshot]]",
                       named.name));
+  for (auto& named : beds)
+    for (const auto& note : turn_meshes_to_particles(named.bed, c.flow.region))
+      fmt::print(stderr, "note: {}: {}\n", named.name, note);
   return beds;
 }
 

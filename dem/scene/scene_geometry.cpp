@@ -169,7 +169,9 @@ class GeometryReader {
     if (file.empty()) return {};
     std::vector<Wall> walls;
     try {
-      walls = import_stl(file, scale, name);
+      std::string mended;
+      walls = import_stl(file, scale, name, &mended);
+      if (!mended.empty()) scene_.notes.push_back(mended);
     } catch (const Error& error) {
       table.problem("file", error.what());
     }

@@ -153,20 +153,45 @@ std::vector<std::vector<double>> unobstructed_factors(const Enclosure& enclosure
   return factors;
 }
 
-/// X of each sphere and wall [wall][sphere] from the table.
+/// Walls of one plane: a patch and the wall it lies on, zones side by side. A table knows the whole plane.
+std::vector<std::vector<std::size_t>> walls_by_plane(const Enclosure& enclosure) {
+  constexpr double same = 1e-6;
+  std::vector<std::vector<std::size_t>> groups;
+  for (std::size_t w = 0; w < enclosure.walls.size(); ++w) {
+    const auto plane = plane_of(enclosure.walls[w]);
+    const double size_m = std::sqrt(area(enclosure.walls[w]));
+    const auto found = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
+      const Wall& other = enclosure.walls[group.front()];
+      return dot(plane_of(other)->normal, plane->normal) > 1 - same &&
+             std::abs(plane->height(other.vertices[0])) < same * (size_m + std::sqrt(area(other)));
+    });
+    if (found == groups.end())
+      groups.push_back({w});
+    else
+      found->push_back(w);
+  }
+  return groups;
+}
+
+/// X of each sphere and wall [wall][sphere] from the table: of all walls in one plane together, and each its part by what
+/// it would be given without the bed.
 std::vector<std::vector<double>> table_walls(const LocalCorrelation& correlation,
                                              const SolidFractionField& field, const Enclosure& enclosure,
                                              const std::vector<double>& area,
                                              const std::vector<std::vector<double>>& exact) {
   std::vector<std::vector<double>> x(enclosure.walls.size(), std::vector<double>(enclosure.sphere_count()));
-  for (std::size_t w = 0; w < enclosure.walls.size(); ++w) {
-    const Wall& wall = enclosure.walls[w];
+  for (const auto& group : walls_by_plane(enclosure)) {
+    const Wall& wall = enclosure.walls[group.front()];
     const Vec3 normal = plane_of(wall)->normal;
     for (std::size_t i = 0; i < enclosure.sphere_count(); ++i) {
       const Vec3 centre = enclosure.centre_m[i];
       const double height = dot(centre - wall.vertices[0], normal);
       const double phi = field.uniform() ? field.whole() : field.between(centre, centre - normal * height);
-      x[w][i] = area[i] * correlation.pw(height / (2 * enclosure.radius_m[i]), exact[w][i], phi);
+      double unobstructed = 0;
+      for (const auto w : group) unobstructed += exact[w][i];
+      if (!(unobstructed > 0)) continue;
+      const double factor = correlation.pw(height / (2 * enclosure.radius_m[i]), unobstructed, phi);
+      for (const auto w : group) x[w][i] = area[i] * factor * (exact[w][i] / unobstructed);
     }
   }
   return x;
@@ -226,13 +251,31 @@ void require_local_solid_fractions(const CorrelationTable& table, const SolidFra
     require_solid_fraction(table, field.mean_at_spheres(), "the part of the box the particles fill");
 }
 
+/// Of the walls' rays each sphere must be due some: they tell what it exchanges with the walls.
+void require_rays_for_spheres(const Enclosure& enclosure, double rays) {
+  constexpr double fewest = 10;
+  const auto area = surface_areas(enclosure);
+  const auto wall = area.begin() + static_cast<std::ptrdiff_t>(enclosure.sphere_count());
+  const double of_walls = std::accumulate(wall, area.end(), 0.0);
+  if (enclosure.sphere_count() == 0 || of_walls == 0) return;
+  const double mean = std::accumulate(area.begin(), wall, 0.0) / static_cast<double>(enclosure.sphere_count());
+  if (const double due = rays * mean / of_walls; due < fewest)
+    throw InputError(advised(
+        fmt::format("correlation: {:.2g} of the walls' {:.2g} rays would meet a sphere (the walls are {:.2g} times as "
+                    "wide as one)",
+                    due, rays, of_walls / mean),
+        "take the walls from the table (radiation.wall_rows = \"table\"), or source = paths or embree"));
+}
+
 WallExchange walls_of(const Enclosure& enclosure, const CorrelationUse& use, const SolidFractionField& field,
                       std::uint64_t update) {
   if (use.wall_rows == WallRows::table)
     return wall_exchange(enclosure, field,
                          enclosure.sphere_count() == 0 ? 1 : mean_diameter_m(enclosure.radius_m));
   const double spheres = std::max<double>(1000, static_cast<double>(enclosure.sphere_count()));
-  return traced_wall_exchange(enclosure, use.wall_rays * spheres, use.seed + update, use.threads);
+  const double rays = use.wall_rays * spheres;
+  require_rays_for_spheres(enclosure, rays);
+  return traced_wall_exchange(enclosure, rays, use.seed + update, use.threads);
 }
 
 }  // namespace

@@ -83,18 +83,30 @@ double solid_fraction(const Enclosure& enclosure) {
 
 SolidFractionField::SolidFractionField(const Enclosure& enclosure, double whole)
     : whole_(whole), mean_(whole), largest_(whole), box_(bounds(enclosure)) {
-  if (enclosure.sphere_count() == 0 || !(whole > 0) || !is_convex(enclosure, box_)) return;
+  if (enclosure.sphere_count() < 2 || !(whole > 0) || !is_convex(enclosure, box_)) return;
   double diameter_m = 0;
   for (const double r : enclosure.radius_m)
     diameter_m += 2 * r / static_cast<double>(enclosure.sphere_count());
-  const double edge_m = std::max(diameter_m, std::cbrt(box_.volume() / most_cells));
-  for (int k = 0; k < 3; ++k) count_[k] = std::max(1, static_cast<int>(box_.size()[k] / edge_m));
+  choose_cells(std::max(diameter_m, std::cbrt(box_.volume() / most_cells)));
   for (int k = 0; k < 3; ++k) cell_m_[k] = box_.size()[k] / count_[k];
   std::vector<double> solid(static_cast<std::size_t>(count_[0]) * count_[1] * count_[2], 0.0);
   share_out(enclosure, solid);
   const double window_m = diameter_m * std::max(least_window, std::cbrt(spheres_in_window * pi / 6 / whole));
   average(solid, free_parts(enclosure), window_m);
   measure(enclosure);
+}
+
+/// Flat boxes are one cell thick, and would else have more than the most.
+void SolidFractionField::choose_cells(double edge_m) {
+  double all = 0;
+  do {
+    all = 1;
+    for (int k = 0; k < 3; ++k) {
+      count_[k] = static_cast<int>(std::clamp(box_.size()[k] / edge_m, 1.0, most_cells));
+      all *= count_[k];
+    }
+    edge_m *= 1.25;
+  } while (all > 1.01 * most_cells);
 }
 
 std::size_t SolidFractionField::cell_of(const Vec3& place_m) const {

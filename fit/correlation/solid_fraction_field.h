@@ -37,6 +37,7 @@ class SolidFractionField {
 
  private:
   std::size_t cell_of(const Vec3& place_m) const;
+  void choose_cells(double edge_m);
   void share_out(const Enclosure& enclosure, std::vector<double>& solid) const;
   std::vector<double> free_parts(const Enclosure& enclosure) const;
   void average(const std::vector<double>& solid, const std::vector<double>& space, double width_m);

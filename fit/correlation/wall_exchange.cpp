@@ -101,9 +101,10 @@ WallExchange traced_wall_exchange(const Enclosure& enclosure, double rays, std::
   const auto area_m2 = surface_areas(enclosure);
   double emitting_m2 = 0;
   for (std::size_t w = 0; w < walls; ++w) emitting_m2 += area_m2[n + w];
+  constexpr double least_rays = 1000;
   std::vector<std::int64_t> launched(enclosure.surface_count(), 0);
   for (std::size_t w = 0; w < walls; ++w)
-    launched[n + w] = std::max<std::int64_t>(1, std::llround(rays * area_m2[n + w] / emitting_m2));
+    launched[n + w] = std::llround(std::max(least_rays, rays * area_m2[n + w] / emitting_m2));
   TraceOptions options;
   options.seed = seed;
   options.threads = threads;

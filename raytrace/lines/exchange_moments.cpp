@@ -152,6 +152,7 @@ ExchangeMoments sweep_exchange_moments(const Enclosure& enclosure, const LineOpt
                                        const WallPatches& patches, int replicate) {
   check_line_options(options);
   const LineScene scene(enclosure, options.lines_per_disc);
+  refuse_wasted_lines(scene, options, options.directions);
   if (scene.is_periodic())
     throw InputError(
         advised("radiation.order > 0 (the box is periodic)", "use order = 0, or source = \"paths\""));

@@ -187,6 +187,37 @@ void PairCounts::sample(std::size_t b) {
         {pair.key, pair.count, static_cast<float>(spread + deviation * deviation * before / (before + 1))});
   }
   blocks_[b].samples = std::move(samples);
+  constexpr std::size_t most_kept = std::size_t{1} << 24;
+  if (pairs_ < most_kept) blocks_[b].ends.push_back(blocks_[b].pairs);
+}
+
+/// What was counted from the end of one replicate to the end of the next, of all ranks.
+ReplicateSamples PairCounts::replicates() const {
+  const auto all = static_cast<std::size_t>(replicates_);
+  const RankPart own = own_blocks();
+  std::int64_t missing = unit_ > 1;
+  for (std::int64_t b = own.begin; b < own.end; ++b)
+    missing += blocks_[static_cast<std::size_t>(b)].ends.size() != all;
+  if (largest_over_ranks(missing) > 0) return {};
+  ReplicateSamples samples(all);
+  for (std::size_t r = 0; r < all; ++r) {
+    for (std::int64_t b = own.begin; b < own.end; ++b) add_replicate(static_cast<std::size_t>(b), r, samples[r]);
+    samples[r] = joined_over_ranks(samples[r]);
+  }
+  return samples;
+}
+
+void PairCounts::add_replicate(std::size_t b, std::size_t r, std::vector<ReplicateSample>& samples) const {
+  static const std::vector<PairCount> none;
+  const auto& before = r > 0 ? blocks_[b].ends[r - 1] : none;
+  auto known = before.begin();
+  for (const PairCount& pair : blocks_[b].ends[r]) {
+    while (known != before.end() && known->key < pair.key) ++known;
+    const bool met = known != before.end() && known->key == pair.key;
+    if (const std::uint32_t count = pair.count - (met ? known->count : 0); count > 0)
+      samples.push_back({static_cast<std::int32_t>(packing_.row(b, pair.key)), packing_.column(pair.key),
+                         static_cast<float>(count)});
+  }
 }
 
 void PairCounts::end_replicate() {
@@ -294,10 +325,12 @@ void PairCounts::share_blocks() {
 SymmetricCounts PairCounts::finish() {
   events_.clear();
   arrived_.clear();
+  SymmetricCounts sum;
+  sum.replicates = replicates();
+  for (Block& block : blocks_) block.ends.clear();
   if (rank_count() > 1) share_blocks();
   const VariancePools pools = pooled_variances();
   Expanded all = expand();
-  SymmetricCounts sum;
   sum.thinning_unit = unit_;
   sum.pattern.row_begin = std::move(all.row_begin);
   sum.pattern.column.reserve(all.cell.size());

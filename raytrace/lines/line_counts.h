@@ -14,6 +14,7 @@ struct SymmetricCounts {
   std::vector<std::int64_t> count;
   std::vector<double> variance;
   int thinning_unit = 1;
+  ReplicateSamples replicates{};  ///< counts of each pair once, in each replicate; empty: too many, or thinned
 };
 
 /// Counts S_ij, the lines on which surfaces i and j follow each other, as sorted lists of pairs i <= j (i =
@@ -59,6 +60,7 @@ class PairCounts {
   struct Block {
     std::vector<PairCount> pairs;  ///< keys ascend
     std::vector<Sample> samples;   ///< of those in sampled rows
+    std::vector<std::vector<PairCount>> ends;  ///< the pairs at the end of each replicate
   };
   struct Scratch {
     std::vector<std::uint32_t> events, room;
@@ -76,6 +78,8 @@ class PairCounts {
   void sample(std::size_t block);
   bool sampled(std::size_t row) const;
   VariancePools pooled_variances() const;
+  ReplicateSamples replicates() const;
+  void add_replicate(std::size_t block, std::size_t replicate, std::vector<ReplicateSample>& samples) const;
   Expanded expand();
 
   PairPacking packing_;

@@ -29,7 +29,7 @@ struct LineSums {
   SymmetricCounts counts;
   double unit_m2;  ///< X = unit S
   MeanChord chord;
-  std::int64_t leaked, ends;
+  std::int64_t leaked, ends, directions;  ///< of all replicates
 };
 
 double polygon_area(const std::vector<Vec3>& corners) {
@@ -122,7 +122,8 @@ LineSums sum_over_lines(const LineScene& scene, const LineOptions& options, int 
   const auto row = result.pattern.row_begin.begin() + scene.open_surface;
   const bool closed = row[0] == row[1];
   return {std::move(result), 2 * scene.spacing * scene.spacing / swept,
-          closed ? mean_chord(chords, 0.5 * static_cast<double>(found), swept) : MeanChord{}, leaked, found};
+          closed ? mean_chord(chords, 0.5 * static_cast<double>(found), swept) : MeanChord{}, leaked, found,
+          std::int64_t{directions} * options.replicates};
 }
 
 /// The stated error, from the variances of pairs as if they were independent.
@@ -163,6 +164,7 @@ LineSums sums_to_target(const LineScene& scene, const LineOptions& options, cons
       return result;
     }
     directions = more_directions(rounds, options);
+    refuse_wasted_lines(scene, options, directions);
   }
 }
 
@@ -197,6 +199,7 @@ std::array<std::vector<double>, 4> variance_factors(const SymmetricCounts& count
 HitCounts sweep_view_factors(const Enclosure& enclosure, const LineOptions& options, LineReport* report) {
   check_line_options(options);
   const LineScene scene(enclosure, options.lines_per_disc);
+  refuse_wasted_lines(scene, options, options.directions);
   LineSums s = sums_to_target(scene, options, stated_quantity(enclosure, options.hot_walls), report);
   const SymmetricCounts& counts = s.counts;
   const std::size_t n = scene.surface_count();
@@ -209,6 +212,7 @@ HitCounts sweep_view_factors(const Enclosure& enclosure, const LineOptions& opti
   hits.spheres = static_cast<std::int32_t>(enclosure.sphere_count());
   hits.variance_factor = variance_factors(counts, hits.spheres);
   hits.thinning_unit = counts.thinning_unit;
+  hits.directions = s.directions;
   hits.pattern = counts.pattern;
   hits.hits = counts.count;
   for (std::size_t i = 0; i < n; ++i)
@@ -221,16 +225,23 @@ HitCounts sweep_view_factors(const Enclosure& enclosure, const LineOptions& opti
   return hits;
 }
 
-ExchangeAreas sweep_exchange_areas(const Enclosure& enclosure, const LineOptions& options,
-                                   LineReport* report) {
+ExchangeAreas sweep_exchange_areas(const Enclosure& enclosure, const LineOptions& options, LineReport* report,
+                                   ReplicateSamples* replicates) {
   check_line_options(options);
   const LineScene scene(enclosure, options.lines_per_disc);
+  refuse_wasted_lines(scene, options, options.directions);
   LineSums s = sums_to_target(scene, options, stated_quantity(enclosure, options.hot_walls), report);
   ExchangeAreas areas;
   areas.area_m2 = surface_areas(enclosure);
   areas.pattern = std::move(s.counts.pattern);
   areas.variance = std::move(s.counts.variance);
   for (double& v : areas.variance) v *= s.unit_m2 * s.unit_m2;
+  if (replicates) {
+    *replicates = std::move(s.counts.replicates);
+    const auto scale = static_cast<float>(s.unit_m2 * options.replicates);
+    for (auto& of_one : *replicates)
+      for (auto& sample : of_one) sample.x_m2 *= scale;
+  }
   areas.value.reserve(s.counts.count.size());
   for (const std::int64_t c : s.counts.count) areas.value.push_back(s.unit_m2 * static_cast<double>(c));
   return areas;

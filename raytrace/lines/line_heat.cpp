@@ -134,6 +134,7 @@ std::vector<double> sweep_black_heat(const Enclosure& enclosure,
                                      LineReport* report, std::vector<std::vector<double>>* replicate_heat_W) {
   check_line_options(options);
   const LineScene scene(enclosure, options.lines_per_disc);
+  refuse_wasted_lines(scene, options, options.directions);
   if (emissive_power_W_m2.size() != scene.surface_count() ||
       !std::all_of(emissive_power_W_m2.begin(), emissive_power_W_m2.end(),
                    [](double e) { return std::isfinite(e); }))
@@ -157,6 +158,7 @@ std::vector<double> sweep_black_heat(const Enclosure& enclosure,
     }
     rounds.push_back({directions, error});
     directions = more_directions(rounds, options);
+    refuse_wasted_lines(scene, options, directions);
   }
 }
 

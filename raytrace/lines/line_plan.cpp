@@ -14,6 +14,14 @@ namespace {
 
 constexpr double most_directions = 1 << 24;
 
+/// Half the surface of the box around the hull: a convex body throws a shadow of a quarter of its surface.
+double mean_shadow_m2(const LineScene& scene) {
+  Box around = Box::empty();
+  for (const Vec3& p : scene.hull) around.include(p);
+  const Vec3 size = around.size();
+  return 0.5 * (size.x * size.y + size.y * size.z + size.z * size.x);
+}
+
 /// The power of the number of directions with which the error falls.
 double falling_power(const std::vector<LineRound>& rounds) {
   if (rounds.size() < 2) return 1;
@@ -50,6 +58,19 @@ LineOptions lines_for_rays(double rays_per_particle) {
   const double per_direction = 2 * options.lines_per_disc * options.replicates;
   options.directions = std::max(8, static_cast<int>(std::lround(rays_per_particle / per_direction)));
   return options;
+}
+
+void refuse_wasted_lines(const LineScene& scene, const LineOptions& options, int directions) {
+  constexpr double affordable = 2e9, wasted = 20;
+  const double sweeps = static_cast<double>(directions) * options.replicates;
+  const double lines = sweeps * mean_shadow_m2(scene) / (scene.spacing * scene.spacing);
+  const double asked = 2 * sweeps * options.lines_per_disc * static_cast<double>(scene.x.size());
+  if (lines <= affordable || lines <= wasted * asked || scene.x.empty()) return;
+  throw InputError(advised(
+      fmt::format("lines: {:.2g} lines, {:.2g} m apart, across all the space between the walls for {:.2g} that end on "
+                  "spheres (small spheres between far walls, or sizes too different)",
+                  lines, scene.spacing, asked),
+      "use paths or embree, whose rays start where the spheres are, or fewer rays"));
 }
 
 int more_directions(const std::vector<LineRound>& rounds, const LineOptions& options) {

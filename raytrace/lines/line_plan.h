@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "raytrace/line_pass/line_scene.h"
 #include "raytrace/lines/line_sweep.h"
 
 namespace granrad {
@@ -15,6 +16,11 @@ int line_threads(int asked);
 /// Directions first (500 keep the scatter between directions below that between lines), then more lines per disc for
 /// the fluxes of single particles.
 LineOptions lines_for_rays(double rays_per_particle);
+
+/// Throws InputError for a sweep of more than 2e9 lines (half a minute of a core and more) nearly all of which no sphere
+/// asked for: over 20 times the line ends that the options give the spheres. So it is with small spheres between far walls,
+/// and with a few large spheres among small ones. Knows this before the first line.
+void refuse_wasted_lines(const LineScene& scene, const LineOptions& options, int directions);
 
 /// An attempt and the error it found.
 struct LineRound {

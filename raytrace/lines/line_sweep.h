@@ -67,8 +67,9 @@ HitCounts sweep_view_factors(const Enclosure& enclosure, const LineOptions& opti
 
 /// The same as exchange areas with their variance: exactly symmetric; rows sum to the sampled area, which
 /// differs from area_m2 by noise until closed.
+/// `replicates`: what each replicate found; left empty when there are too many pairs to keep them.
 ExchangeAreas sweep_exchange_areas(const Enclosure& enclosure, const LineOptions& options,
-                                   LineReport* report = nullptr);
+                                   LineReport* report = nullptr, ReplicateSamples* replicates = nullptr);
 
 /// Net heat received by every black surface, W, without a matrix: sum_j X_ij (E_j - E_i) for the emissive
 /// powers E [surface_count], W/m^2. Sums in integers: the heats add up to zero within round-off of the

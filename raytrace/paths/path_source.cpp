@@ -28,9 +28,10 @@ RadiativeHeat PathSource::trace_enough_paths(const RadiativeState& state, std::u
   if (!(state.wanted_error_W > 0) || ratio <= 1) return heat;
   const double walks = margin * static_cast<double>(first_look_walks) * ratio * ratio;
   options.walks = static_cast<std::int64_t>(std::min(walks, static_cast<double>(most_chosen_walks)));
-  const std::int64_t looked = heat.rays;
+  const RadiativeHeat look = heat;
   heat = trace_paths(enclosure_, *tracer_, state, options, update);
-  heat.rays += looked;
+  heat.rays += look.rays;
+  heat.lost_rays += look.lost_rays;
   return heat;
 }
 

@@ -104,7 +104,9 @@ RadiativeHeat trace_paths(const Enclosure& enclosure, const EmbreeTracer& tracer
     throw NumericalError(
         advised(fmt::format("paths: {} of {} walks leaked or did not end", sums.lost, walker.walks()),
                 "close the walls, and let some surface absorb"));
-  return in_watts(sums, walker.quantum_W());
+  RadiativeHeat heat = in_watts(sums, walker.quantum_W());
+  heat.lost_rays = sums.lost;
+  return heat;
 }
 
 }  // namespace granrad

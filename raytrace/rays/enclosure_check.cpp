@@ -9,6 +9,7 @@
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
 #include "dem/base/random.h"
+#include "dem/bed/wall_cover.h"
 #include "dem/bed/wall_shape.h"
 #include "raytrace/embree/embree_tracer.h"
 #include "raytrace/facets.h"
@@ -202,17 +203,46 @@ EnclosureCheck check_enclosure(const Enclosure& enclosure, const std::vector<std
   return Probe(enclosure, id).run();
 }
 
+namespace {
+
+/// Whether nearly all that particles see of wall w of the enclosure is its back.
+bool faces_away(const EnclosureCheck& check, std::size_t w) {
+  constexpr double nearly_all = 0.9;
+  const auto all = static_cast<double>(check.backs[w] + check.fronts[w]);
+  return check.backs[w] >= few_backs && static_cast<double>(check.backs[w]) >= nearly_all * all;
+}
+
+std::string turn(Wall& wall) {
+  flip(wall);
+  return fmt::format("wall {} faced away from the particles and was turned", wall.name);
+}
+
+}  // namespace
+
 std::vector<std::string> turn_walls_to_particles(std::vector<Wall>& walls, const EnclosureCheck& check,
                                                  const Enclosure& enclosure) {
-  constexpr double nearly_all = 0.9;
   std::vector<std::string> notes;
-  for (std::size_t w = 0; w < check.backs.size(); ++w) {
-    const auto all = static_cast<double>(check.backs[w] + check.fronts[w]);
-    if (check.backs[w] < few_backs || static_cast<double>(check.backs[w]) < nearly_all * all) continue;
-    Wall& wall = walls[static_cast<std::size_t>(enclosure.wall[w])];
-    flip(wall);
-    notes.push_back(fmt::format("wall {} faced away from the particles and was turned", wall.name));
-  }
+  for (std::size_t w = 0; w < check.backs.size(); ++w)
+    if (faces_away(check, w)) notes.push_back(turn(walls[static_cast<std::size_t>(enclosure.wall[w])]));
+  return notes;
+}
+
+std::vector<std::string> turn_meshes_to_particles(Bed& bed, const Box& region) {
+  const auto is_mesh = [](const Wall& wall) { return face_count(wall) > 1; };
+  if (bed.size() == 0 || std::none_of(bed.walls.begin(), bed.walls.end(), is_mesh)) return {};
+  const Enclosure enclosure = make_enclosure(bed, region);
+  const EnclosureCheck check = check_enclosure(enclosure, bed.id);
+  Bed turned = bed;
+  std::vector<std::string> notes;
+  for (std::size_t w = 0; w < check.backs.size(); ++w)
+    if (Wall& wall = turned.walls[static_cast<std::size_t>(enclosure.wall[w])]; is_mesh(wall) && faces_away(check, w))
+      notes.push_back(turn(wall));
+  if (notes.empty()) return {};
+  auto laid = turned.walls;
+  cover_walls(laid);
+  const bool as_laid = laid.size() == bed.walls.size();
+  if (!as_laid || !check_enclosure(make_enclosure(turned, region), bed.id).problems.empty()) return {};
+  bed.walls = std::move(turned.walls);
   return notes;
 }
 

@@ -28,4 +28,9 @@ EnclosureCheck check_enclosure(const Enclosure& enclosure, const std::vector<std
 std::vector<std::string> turn_walls_to_particles(std::vector<Wall>& walls, const EnclosureCheck& check,
                                                  const Enclosure& enclosure);
 
+/// Turns meshes of a bed that show the particles nearly nothing but their back, as hoppers from CAD do whose normals
+/// point out of the vessel, and says so. Bodies with the particles around them stay. Nothing is turned when the
+/// enclosure would not be sound afterwards, nor in a bed without particles.
+std::vector<std::string> turn_meshes_to_particles(Bed& bed, const Box& region);
+
 }  // namespace granrad

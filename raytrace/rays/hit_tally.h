@@ -25,6 +25,11 @@ class HitTally {
   }
   /// Hits of the present replicate on the surfaces marked in `wanted`.
   std::int64_t hits_on(const std::vector<char>& wanted) const;
+  /// Calls visit(surface, hits) for those of the present replicate.
+  template <class Visit>
+  void visit_current(Visit&& visit) const {
+    for (const std::int32_t s : touched_) visit(s, current_[static_cast<std::size_t>(s)]);
+  }
   /// Ends one replicate: what was added since the last one counts as one independent estimate.
   void end_replicate();
   /// The entries of the surface just counted, ascending; leaves the tally empty for the next one.

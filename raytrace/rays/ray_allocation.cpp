@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "raytrace/rays/ray_rows.h"
+
 namespace granrad {
 
 namespace {
@@ -97,6 +99,7 @@ std::vector<std::int64_t> rays_for_error(const HitCounts& known, const StatedQua
   }
   for (std::size_t w = p.u.size(); w + 1 < rays.size(); ++w)
     send(w, quantity.counted[w] && wall_density > 0 ? scale * wall_density : total / area);
+  if (wall_density == 0) spare_wide_walls(rays, p.u.size(), total / static_cast<double>(p.u.size()));
   return rays;
 }
 

@@ -11,6 +11,11 @@ struct TracedRow {
   std::vector<HitEntry> entries;
   std::int64_t launched = 0, leaked = 0, chords = 0;
   double chord_sum_m = 0, chord_square_sum_m2 = 0;
+  /// Where replicates are kept apart: hits on each surface in each.
+  struct Part {
+    std::int32_t replicate, surface, hits;
+  };
+  std::vector<Part> parts;
   HitEntry stated;  ///< the walls whose error is stated, as if they were one
 
   void add_chords(const TracedRow& more) {

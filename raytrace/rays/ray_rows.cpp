@@ -43,7 +43,10 @@ class RowTracer {
         options_(options),
         follow_(follow),
         stated_(stated_quantity(enclosure, options.hot_walls).counted),
-        replicates_(replicate_count(options.sampling, enclosure.surface_count())),
+        keeps_(options.kept_replicates > 1 &&
+               std::accumulate(rays.begin(), rays.end(), 0.0) < most_kept_rays),
+        replicates_(keeps_ ? options.kept_replicates
+                           : replicate_count(options.sampling, enclosure.surface_count())),
         threads_(options.threads > 0 ? options.threads : omp_get_max_threads()),
         monitor_(options.watch, std::accumulate(rays.begin(), rays.end(), 0.0)),
         tallies_(static_cast<std::size_t>(threads_), HitTally(enclosure.surface_count())),
@@ -58,6 +61,7 @@ class RowTracer {
   }
 
   int replicates() const { return replicates_; }
+  bool keeps() const { return keeps_; }
   const std::vector<char>& stated() const { return stated_; }
 
   /// The rows of all ranks. Throws TraceStopped.
@@ -75,6 +79,7 @@ class RowTracer {
   }
 
  private:
+  static constexpr double most_kept_rays = 5e7;
   /// A surface with more rays than this in a replicate is shared out to threads in parts.
   static constexpr std::int64_t part_rays = 1 << 16;
 
@@ -119,7 +124,7 @@ class RowTracer {
     const std::int64_t rays = per_replicate(surface);
     for (std::int32_t replicate = 0; replicate < replicates_; ++replicate) {
       row.add_chords(trace_rays(surface, replicate, 0, rays, tally));
-      end_replicate(row, tally);
+      end_replicate(row, tally, replicate);
     }
     row.entries = tally.take();
     row.launched = rays * replicates_;
@@ -148,14 +153,19 @@ class RowTracer {
     for (std::size_t k = 0; k < found.size(); ++k) {
       row.add_chords(found[k]);
       for (const HitEntry& e : found[k].entries) tally.add(e.surface, static_cast<std::int32_t>(e.hits));
-      if ((k + 1) % static_cast<std::size_t>(parts) == 0) end_replicate(row, tally);
+      if ((k + 1) % static_cast<std::size_t>(parts) == 0)
+        end_replicate(row, tally, static_cast<std::int32_t>(k / static_cast<std::size_t>(parts)));
     }
     row.entries = tally.take();
     row.launched = rays * replicates_;
     return row;
   }
 
-  void end_replicate(TracedRow& row, HitTally& tally) const {
+  void end_replicate(TracedRow& row, HitTally& tally, std::int32_t replicate) const {
+    if (keeps_)
+      tally.visit_current([&](std::int32_t to, std::int32_t hits) {
+        row.parts.push_back({replicate, to, hits});
+      });
     const std::int64_t hits = tally.hits_on(stated_);
     row.stated.hits += hits;
     row.stated.replicate_square_sum += static_cast<double>(hits) * static_cast<double>(hits);
@@ -194,6 +204,7 @@ class RowTracer {
   const TraceOptions& options_;
   const std::function<RayEnd(const EmittedRay&)>& follow_;
   std::vector<char> stated_;
+  bool keeps_;
   int replicates_, threads_;
   RayMonitor monitor_;
   std::vector<HitTally> tallies_;
@@ -299,6 +310,9 @@ class CountBuilder {
     counts_.pattern.row_begin.push_back(static_cast<std::int64_t>(counts_.hits.size()));
     counts_.launched.push_back(row.launched);
     counts_.leaked += row.leaked;
+    if (!counts_.parts.empty())
+      for (const TracedRow::Part& part : row.parts)
+        counts_.parts[static_cast<std::size_t>(part.replicate)].push_back({i, part.surface, part.hits});
     if (row.chords == 0) return;
     const double n = static_cast<double>(row.chords), mean = row.chord_sum_m / n;
     area_ += area;
@@ -356,7 +370,23 @@ std::vector<std::int64_t> rays_per_surface(const Enclosure& enclosure, const std
     const double share = i < spheres || total == 0 ? 1 : area[i] * static_cast<double>(count) / total;
     rays[i] = static_cast<std::int64_t>(std::ceil(std::max(1.0, rays_per_particle * share)));
   }
+  spare_wide_walls(rays, spheres, rays_per_particle);
   return rays;
+}
+
+void spare_wide_walls(std::vector<std::int64_t>& rays, std::size_t spheres, double rays_per_particle) {
+  constexpr double worth = 600, least_worth = 6, many_rays = 6e6;  // of a box: 100 times a particle's from each face
+  if (spheres == 0) return;
+  const auto first_wall = rays.begin() + static_cast<std::ptrdiff_t>(spheres);
+  const double from_spheres = std::accumulate(rays.begin(), first_wall, 0.0);
+  const double from_walls = std::accumulate(first_wall, rays.end(), 0.0);
+  const double most = std::max({from_spheres, least_worth * rays_per_particle,
+                                std::min(worth * rays_per_particle, many_rays)});
+  if (from_walls <= most) return;
+  for (auto wall = first_wall; wall != rays.end(); ++wall) {
+    const auto own = static_cast<double>(*wall);
+    *wall = std::llround(std::max(std::min(own, rays_per_particle), own * most / from_walls));
+  }
 }
 
 HitCounts trace_rows(const Enclosure& enclosure, const std::vector<double>& emitting_area_m2,
@@ -383,6 +413,7 @@ HitCounts trace_rows(const Enclosure& enclosure, const std::vector<double>& emit
   HitCounts counts;
   counts.area_m2 = emitting_area_m2;
   counts.spheres = static_cast<std::int32_t>(enclosure.sphere_count());
+  if (tracer.keeps() && unit == 1) counts.parts.resize(static_cast<std::size_t>(tracer.replicates()));
   CountBuilder builder(counts, Thinning(options.seed, unit), tracer.replicates(),
                        stated_density(tracer.stated(), emitting_area_m2, rays));
   // Walls first: they send the most rays, and threads should not wait for the last of them.

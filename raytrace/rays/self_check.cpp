@@ -87,7 +87,7 @@ std::int64_t compared_pairs(const HitCounts& counts) {
 
 }  // namespace
 
-SelfCheck self_check(const Enclosure& enclosure, const HitCounts& counts) {
+SelfCheck self_check(const Enclosure& enclosure, const HitCounts& counts, double tolerated_leaks) {
   SelfCheck check;
   check.leaked = counts.leaked;
   double lost = 0, launched = 0;
@@ -112,7 +112,7 @@ SelfCheck self_check(const Enclosure& enclosure, const HitCounts& counts) {
   const auto fail = [&](const std::string& what) {
     check.failed += (check.failed.empty() ? "" : "; ") + what;
   };
-  if (counts.leaked > 0)
+  if (static_cast<double>(counts.leaked) > tolerated_leaks * launched)
     fail(fmt::format(
         "{} rays leaked through walls (they met the back of one: normals must point to the particles)",
         counts.leaked));

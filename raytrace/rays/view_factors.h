@@ -24,6 +24,8 @@ struct TraceOptions {
   int threads = 0;  ///< 0: OpenMP's default; results do not depend on it
   std::size_t memory_limit_bytes = std::size_t{4}
                                    << 30;  ///< of tracing and closing; see HitCounts::thinning_unit
+  /// > 1: that many replicates, their hits kept apart in HitCounts::parts (as long as there are fewer than 5e7 rays).
+  int kept_replicates = 0;
   TraceWatch watch{};                      ///< progress of the present round, and whether to go on
 };
 
@@ -56,7 +58,8 @@ HitCounts trace_total_exchange(const Enclosure& enclosure, const std::vector<dou
                                const TraceOptions& options, TraceReport* report = nullptr);
 
 /// Leaked rays, rows that do not add up, counts that disagree between the two ends of a pair, and a mean free
-/// path off 4 V / S by more than its error. V is known when the walls close or all directions are periodic.
-SelfCheck self_check(const Enclosure& enclosure, const HitCounts& counts);
+/// path off 4 V / S by more than its error. V is known when the walls close or all directions are periodic. Leaks fail when
+/// they are more than `tolerated_leaks` of all rays.
+SelfCheck self_check(const Enclosure& enclosure, const HitCounts& counts, double tolerated_leaks = 0);
 
 }  // namespace granrad

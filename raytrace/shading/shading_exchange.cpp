@@ -105,7 +105,8 @@ bool add_walls(const Enclosure& enclosure, const HitCounts& counts, Assembly& as
 
 }  // namespace
 
-void refuse_what_shading_cannot_serve(const Enclosure& enclosure) {
+void refuse_what_shading_cannot_serve(const Enclosure& enclosure, double rays_per_particle) {
+  constexpr double fewest_rays = 10;
   std::vector<std::string> problems;
   const auto [low, high] = std::minmax_element(enclosure.radius_m.begin(), enclosure.radius_m.end());
   if (!enclosure.radius_m.empty() && *high > 1.01 * *low)
@@ -116,11 +117,21 @@ void refuse_what_shading_cannot_serve(const Enclosure& enclosure) {
   if (enclosure.periodic != std::array<bool, 3>{})
     problems.push_back(
         advised("shading: the box is periodic (walls are needed)", "choose source = paths, lines or embree"));
+  const auto area = surface_areas(enclosure);
+  const auto wall = area.begin() + static_cast<std::ptrdiff_t>(enclosure.sphere_count());
+  const double of_spheres = std::accumulate(area.begin(), wall, 0.0),
+               of_walls = std::accumulate(wall, area.end(), 0.0);
+  if (const double due = rays_per_particle * of_spheres / of_walls; of_spheres > 0 && due < fewest_rays)
+    problems.push_back(advised(
+        fmt::format("shading: {:.2g} of the walls' rays would meet a sphere (the walls are {:.2g} times as wide as all "
+                    "spheres; their rays tell what a sphere and a wall exchange)",
+                    due, of_walls / of_spheres),
+        "choose source = paths or embree, or more rays"));
   if (!problems.empty()) throw InputError(problems);
 }
 
 ExchangeAreas shading_exchange_areas(const Enclosure& enclosure, const ShadingOptions& options) {
-  refuse_what_shading_cannot_serve(enclosure);
+  refuse_what_shading_cannot_serve(enclosure, options.rays_per_particle);
   Assembly assembly(surface_areas(enclosure));
   for (const VisiblePair& pair : visible_pairs(enclosure, options.threads)) {
     const double r_i = enclosure.radius_m[pair.i], r_j = enclosure.radius_m[pair.j];

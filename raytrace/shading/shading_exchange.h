@@ -12,8 +12,9 @@ struct ShadingOptions {
   int threads = 0;  ///< 0: OpenMP's default; results do not depend on it
 };
 
-/// Throws InputError: radii that differ, periodic boxes.
-void refuse_what_shading_cannot_serve(const Enclosure& enclosure);
+/// Throws InputError: radii that differ, periodic boxes, walls so wide beside the spheres that fewer than 10 of their rays
+/// are due to each sphere.
+void refuse_what_shading_cannot_serve(const Enclosure& enclosure, double rays_per_particle);
 
 /// Exchange areas X_ij = A_i F_ij of equal spheres (radii within 1 %) by explicit shading, and of walls by rays; nothing is
 /// fitted. Not yet closed.
@@ -23,7 +24,7 @@ void refuse_what_shading_cannot_serve(const Enclosure& enclosure);
 ///  - walls: their rows by Embree, every sphere by reciprocity.
 ///  - surroundings: by the walls' rays; of a sphere what is missing to its area, where anything is open.
 /// Symmetric. Variances: of walls by their counts, of a pair of spheres binomial (an upper bound: lines are even).
-/// Throws InputError: radii that differ, periodic boxes.
+/// Throws InputError as refuse_what_shading_cannot_serve.
 ExchangeAreas shading_exchange_areas(const Enclosure& enclosure, const ShadingOptions& options);
 
 }  // namespace granrad

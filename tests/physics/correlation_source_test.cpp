@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "dem/base/error.h"
+#include "dem/bed/wall_cover.h"
 #include "dem/packing/packing.h"
 #include "fit/fitting/fit_correlation.h"
 #include "raytrace/rays/view_factors.h"
@@ -98,6 +99,28 @@ TEST(CorrelationSource, GivesTheSameBitsTwice) {
              b = correlation_exchange(printed())(enclosure, 5);
   EXPECT_EQ(a.value, b.value);
   EXPECT_EQ(a.pattern.column, b.pattern.column);
+}
+
+// A heater patch on the floor and what is left of the floor get together what the floor alone would: a cubic of the
+// distance knows the plane, not the patch. Planted, seen: each wall given the value of the whole plane.
+TEST(CorrelationSource, APatchAndTheWallItLiesOnShareWhatThePlaneGets) {
+  const auto bare = bed(channel, 0.25, 3);
+  Enclosure patched = bare;
+  patched.walls.push_back(
+      {.name = "patch", .vertices = {{0.003, 0.001, 0}, {0.006, 0.001, 0}, {0.006, 0.003, 0}, {0.003, 0.003, 0}}});
+  cover_walls(patched.walls);
+  patched.wall.push_back(static_cast<std::int32_t>(patched.wall.size()));
+  ASSERT_EQ(patched.walls.size(), 7u);
+  const auto x = correlation_exchange(printed())(bare, 0), y = correlation_exchange(printed())(patched, 0);
+  const std::size_t n = bare.sphere_count();
+  double on_patch = 0, on_floor = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double floor = entry(x, i, n + 4), rest = entry(y, i, n + 4), patch = entry(y, i, n + 6);
+    ASSERT_NEAR(rest + patch, floor, 1e-9 * floor) << i;
+    on_patch += patch, on_floor += floor;
+  }
+  EXPECT_GT(on_patch, 0.03 * on_floor);
+  EXPECT_LT(on_patch, 0.3 * on_floor) << "a twentieth of the floor";
 }
 
 TEST(CorrelationSource, GivesWhatIsMissingToAnOpening) {

@@ -304,6 +304,34 @@ TEST(ZeroHits, BoundIsExceededInOnePercent) {
       }
 }
 
+// The same by lines, just above the bound: their hits come in clusters. Planted, seen: each line end taken for a trial of
+// its own.
+TEST(ZeroHits, BoundOfLinesIsExceededInOnePercent) {
+  for (const double ratio : {1.0, 2.0})
+    for (const double lines_per_disc : {3.0, 6.0, 12.0}) {
+      const double r2 = ratio * r, s = 2.5 * (r + r2), exact = exact_two_sphere(r, r2, s);
+      const Enclosure e = spheres_in_open_space({{0, 0, 0}, {s, 0, 0}}, {r, r2});
+      LineOptions o;
+      o.lines_per_disc = lines_per_disc;
+      o.replicates = 2;
+      o.threads = 1;
+      o.directions = 1000;
+      const double bound = zero_hit_bound(sweep_view_factors(e, o))[0];  // falls as 1 / directions
+      o.directions = static_cast<int>(std::ceil(1.03 * 1000 * bound / exact));
+      constexpr int trials = 1000;
+      int exceeded = 0, judged = 0;
+      for (o.seed = 1; o.seed <= trials; ++o.seed) {
+        const HitCounts c = sweep_view_factors(e, o);
+        judged += exact > zero_hit_bound(c)[0];
+        exceeded += hits(c, 0, 1) == 0 && exact > zero_hit_bound(c)[0];
+      }
+      std::printf("lines, ratio %.0f, %.0f a disc, %d directions: bound exceeded in %.2f %%\n", ratio, lines_per_disc,
+                  o.directions, 100.0 * exceeded / trials);
+      EXPECT_GT(judged, trials / 2);
+      EXPECT_LE(exceeded, 23);  // 1 % of 1000 and 4 sigma
+    }
+}
+
 // Half the memory, so that rare pairs are thinned: rows still close, pairs are the same from both ends, and
 // the sums over 100 seeds are those of full counts within 4 sigma. Planted: kept pairs left at their own
 // count lose 97 sigma.

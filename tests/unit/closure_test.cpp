@@ -119,6 +119,19 @@ TEST(Closure, SurroundingsTakeTheAreaTheirRowNeeds) {
   EXPECT_NEAR(row_sum(x, 2), x.area_m2[2], 1e-15);
 }
 
+// Two plates that see nearly only each other, and a rim. Planted, seen: sweeps alone, which stall.
+TEST(Closure, WidePlatesCloseToo) {
+  ExchangeAreas e;
+  const double plate = 1, rim = 1e-4;
+  e.pattern = {{0, 2, 4, 7, 7}, {1, 2, 0, 2, 0, 1, 2}};
+  e.value = {0.9995, 0.5e-4, 0.9995, 0.52e-4, 0.5e-4, 0.52e-4, 1e-6};
+  e.area_m2 = {plate, plate, rim, 0};
+  ClosureReport report;
+  const ExchangeAreas x = close(e, Closure::reciprocal, report);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(row_sum(x, i) / x.area_m2[i], 1, 1e-12);
+  EXPECT_LT(report.sweeps, 500);
+}
+
 TEST(Closure, RefusesWhatCannotClose) {
   ExchangeAreas e;
   e.pattern = {{0, 1, 2, 2}, {1, 0}};

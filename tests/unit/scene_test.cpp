@@ -2,6 +2,7 @@
 // wrong.
 #include "dem/scene/scene.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -145,6 +146,40 @@ TEST(Scene, TheBoxIsDerivedFromPolygonsAndMeshes) {
   const auto& t = s.walls[1].triangles[0];
   const auto& v = s.walls[1].vertices;
   EXPECT_LT(cross(v[t[1]] - v[t[0]], v[t[2]] - v[t[0]]).z, 0) << "flipped";
+}
+
+TEST(Scene, SolidsOfOneFileHaveRolesOfTheirOwn) {
+  const TemporaryFolder folder;
+  const auto facet = [](const char* name, double z) {
+    return fmt::format(
+        "solid {0}\nfacet normal 0 0 1\nouter loop\nvertex 0 0 {1}\nvertex 2 0 {1}\nvertex 0 4 {1}\nendloop\n"
+        "endfacet\nendsolid {0}\n",
+        name, z);
+  };
+  const auto stl = folder.write("m.stl", facet("heater", 0) + facet("lid", 1) + facet("side", 2));
+  const auto bed = folder.write("bed.csv", "x,y,z,radius\n0.001,0.001,0.001,0.0004\n");
+  const std::string text = general + material + "[particles]\nfile = '" + bed.string() +
+                           "'\n[[mesh]]\nname = 'tank'\nfile = '" + stl.string() +
+                           "'\nrole = 'adiabatic'\nemissivity = 0.6\n";
+  const Scene s = parse(text +
+                        "[mesh.solid.heater]\nrole = 'isothermal'\ntemperature_K = 900\nemissivity = 0.3\n"
+                        "[mesh.solid.lid]\nrole = 'open'\ntemperature_K = 310\n");
+  ASSERT_EQ(s.walls.size(), 3u);
+  EXPECT_EQ(s.walls[0].name, "tank.heater");
+  EXPECT_EQ(s.walls[0].role, WallRole::isothermal);
+  EXPECT_EQ(s.walls[0].temperature_K, 900);
+  EXPECT_EQ(s.walls[0].emissivity, 0.3);
+  EXPECT_EQ(s.walls[1].role, WallRole::open);
+  EXPECT_EQ(s.walls[1].temperature_K, 310);
+  EXPECT_EQ(s.walls[1].emissivity, 1) << "an opening is black";
+  EXPECT_EQ(s.walls[2].role, WallRole::adiabatic);
+  EXPECT_EQ(s.walls[2].emissivity, 0.6) << "that of the mesh";
+
+  const auto typo = problems_of(text + "[mesh.solid.heatre]\nrole = 'isothermal'\ntemperature_K = 900\n");
+  ASSERT_EQ(typo.size(), 1u);
+  EXPECT_NE(typo[0].find("heatre"), std::string::npos) << typo[0];
+  EXPECT_NE(typo[0].find("heater"), std::string::npos) << "suggests: " << typo[0];
+  EXPECT_EQ(problems_of(text + "[mesh.solid.heater]\nrole = 'isothermal'\n").size(), 1u) << "no temperature";
 }
 
 TEST(Scene, ShippedMaterialsAreThePapers) {
