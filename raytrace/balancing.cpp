@@ -51,7 +51,8 @@ class Newton {
       stop_if_interrupted();
       rows();
       if (!std::isfinite(worst_)) return {};
-      if (worst_ <= 0.1 * row_tolerance || (worst_ <= row_tolerance && worst_ >= 0.5 * before)) return factor_;
+      if (worst_ <= 0.1 * row_tolerance || (worst_ <= row_tolerance && worst_ >= 0.5 * before))
+        return factor_;
       before = worst_;
       go(direction());
     }
@@ -71,7 +72,8 @@ class Newton {
   /// (I + S) y of the scaled Hessian diag(r) + f X f.
   Values hessian(const Values& y) const {
     Values v(y.size());
-    for (std::size_t i = 0; i < y.size(); ++i) v[i] = closes(x_, i) ? factor_[i] * y[i] / std::sqrt(row_[i]) : 0;
+    for (std::size_t i = 0; i < y.size(); ++i)
+      v[i] = closes(x_, i) ? factor_[i] * y[i] / std::sqrt(row_[i]) : 0;
     Values product = times(x_, v, true);
     for (std::size_t i = 0; i < y.size(); ++i)
       if (closes(x_, i)) product[i] = y[i] + factor_[i] * product[i] / std::sqrt(row_[i]);

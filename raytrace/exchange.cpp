@@ -77,7 +77,8 @@ std::vector<double> zero_hit_bound(const HitCounts& counts) {
   const double thinned = counts.thinning_unit > 1 ? 2 * static_cast<double>(counts.thinning_unit) : 0;
   const double expected = -std::log(0.01) + thinned;
   const auto lines_together = [&](std::int64_t ends) {
-    return counts.directions > 0 ? static_cast<double>(ends) / (8.0 * static_cast<double>(counts.directions)) : 0;
+    return counts.directions > 0 ? static_cast<double>(ends) / (8.0 * static_cast<double>(counts.directions))
+                                 : 0;
   };
   std::int64_t most_ends = 0;  // of a sphere: a wall meets no more lines together with one
   for (std::int32_t s = 0; s < counts.spheres; ++s)

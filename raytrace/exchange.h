@@ -31,7 +31,7 @@ struct HitCounts {
   std::int64_t leaked = 0;        ///< rays that met the back of a wall or were lost
   double mean_chord_m = 0;        ///< area-weighted mean free length of a ray over all surfaces
   double mean_chord_error_m = 0;  ///< its standard error (binomial sampling)
-  std::int64_t directions = 0;  ///< of all replicates of parallel lines; 0: rays, each of its own direction
+  std::int64_t directions = 0;    ///< of all replicates of parallel lines; 0: rays, each of its own direction
   /// Hits by replicate, where a trace was asked to keep them (TraceOptions::kept_replicates).
   struct Part {
     std::int32_t from, to, hits;

@@ -68,8 +68,8 @@ bool has_two_sides(const Wall& wall) {
     for (auto other = by_distance.lower_bound(distance - same * size);
          other != by_distance.end() && other->first <= distance + same * size; ++other) {
       const WallFace& back = *other->second;
-      if (dot(face->normal, back.normal) < -1 + same && std::abs(dot(middle - back.vertices[0], back.normal)) < same * size &&
-          inside(middle, back))
+      if (dot(face->normal, back.normal) < -1 + same &&
+          std::abs(dot(middle - back.vertices[0], back.normal)) < same * size && inside(middle, back))
         return true;
     }
   }

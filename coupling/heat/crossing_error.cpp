@@ -73,8 +73,8 @@ class ClosureShift {
 
 }  // namespace
 
-double crossing_error_W(const ExchangeAreas& areas, const ReplicateSamples& replicates, const Values& radiosity_W_m2,
-                        const Values& adjoint) {
+double crossing_error_W(const ExchangeAreas& areas, const ReplicateSamples& replicates,
+                        const Values& radiosity_W_m2, const Values& adjoint) {
   const ClosureShift shift(areas, radiosity_W_m2, adjoint);
   const Values& c = shift.values();
   Values found;

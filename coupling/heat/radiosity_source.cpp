@@ -19,10 +19,12 @@ std::vector<std::int32_t> surfaces_kept(const std::vector<char>& excluded) {
 }
 
 /// Samples between the rows kept, by their new numbers.
-ReplicateSamples restricted(ReplicateSamples all, const std::vector<std::int32_t>& kept, std::size_t surfaces) {
+ReplicateSamples restricted(ReplicateSamples all, const std::vector<std::int32_t>& kept,
+                            std::size_t surfaces) {
   if (kept.size() == surfaces) return all;
   std::vector<std::int32_t> number(surfaces, -1);
-  for (std::size_t k = 0; k < kept.size(); ++k) number[static_cast<std::size_t>(kept[k])] = static_cast<std::int32_t>(k);
+  for (std::size_t k = 0; k < kept.size(); ++k)
+    number[static_cast<std::size_t>(kept[k])] = static_cast<std::int32_t>(k);
   for (auto& of_one : all) {
     std::erase_if(of_one, [&](const ReplicateSample& s) { return number[s.i] < 0 || number[s.j] < 0; });
     for (auto& s : of_one) s.i = number[s.i], s.j = number[s.j];

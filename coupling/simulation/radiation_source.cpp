@@ -161,13 +161,15 @@ std::string opening_problem(const Scene& scene, const Bed& bed, const EnclosureC
 std::vector<std::string> sheets_that_join_their_sides(const Enclosure& enclosure) {
   std::vector<std::string> problems;
   for (const Wall& wall : enclosure.walls) {
-    const bool reflects = wall.role == WallRole::adiabatic || (wall.role == WallRole::isothermal && wall.emissivity < 1);
+    const bool reflects =
+        wall.role == WallRole::adiabatic || (wall.role == WallRole::isothermal && wall.emissivity < 1);
     if (reflects && has_two_sides(wall))
-      problems.push_back(
-          advised(fmt::format("wall {} has two sides and reflects (with one radiosity for both, what falls on the one "
-                              "would leave from the other)",
-                              wall.name),
-                  "use source = paths, or a wall for each side"));
+      problems.push_back(advised(
+          fmt::format(
+              "wall {} has two sides and reflects (with one radiosity for both, what falls on the one "
+              "would leave from the other)",
+              wall.name),
+          "use source = paths, or a wall for each side"));
   }
   return problems;
 }

@@ -99,8 +99,7 @@ const std::vector<Recorder::MarkColumn> Recorder::mark_columns = {
     {"heat_out_J", &Mark::heat_out_J},   {"heat_capacity_out_J_K", &Mark::heat_capacity_out_J_K},
     {"solid_J", &Mark::solid_J},         {"gas_J", &Mark::gas_J},
     {"radiation_J", &Mark::radiation_J}, {"error_squared_W2", &Mark::error_squared_W2},
-    {"updates", &Mark::updates},
-    {"lost_rays", &Mark::lost_rays},
+    {"updates", &Mark::updates},         {"lost_rays", &Mark::lost_rays},
 };
 
 Recorder::Mark Recorder::mark(const Bed& bed, const Flow& flow, const HeatModel& heat) const {

@@ -258,12 +258,14 @@ void require_rays_for_spheres(const Enclosure& enclosure, double rays) {
   const auto wall = area.begin() + static_cast<std::ptrdiff_t>(enclosure.sphere_count());
   const double of_walls = std::accumulate(wall, area.end(), 0.0);
   if (enclosure.sphere_count() == 0 || of_walls == 0) return;
-  const double mean = std::accumulate(area.begin(), wall, 0.0) / static_cast<double>(enclosure.sphere_count());
+  const double mean =
+      std::accumulate(area.begin(), wall, 0.0) / static_cast<double>(enclosure.sphere_count());
   if (const double due = rays * mean / of_walls; due < fewest)
     throw InputError(advised(
-        fmt::format("correlation: {:.2g} of the walls' {:.2g} rays would meet a sphere (the walls are {:.2g} times as "
-                    "wide as one)",
-                    due, rays, of_walls / mean),
+        fmt::format(
+            "correlation: {:.2g} of the walls' {:.2g} rays would meet a sphere (the walls are {:.2g} times as "
+            "wide as one)",
+            due, rays, of_walls / mean),
         "take the walls from the table (radiation.wall_rows = \"table\"), or source = paths or embree"));
 }
 

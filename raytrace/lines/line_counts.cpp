@@ -201,7 +201,8 @@ ReplicateSamples PairCounts::replicates() const {
   if (largest_over_ranks(missing) > 0) return {};
   ReplicateSamples samples(all);
   for (std::size_t r = 0; r < all; ++r) {
-    for (std::int64_t b = own.begin; b < own.end; ++b) add_replicate(static_cast<std::size_t>(b), r, samples[r]);
+    for (std::int64_t b = own.begin; b < own.end; ++b)
+      add_replicate(static_cast<std::size_t>(b), r, samples[r]);
     samples[r] = joined_over_ranks(samples[r]);
   }
   return samples;

@@ -14,7 +14,8 @@ struct SymmetricCounts {
   std::vector<std::int64_t> count;
   std::vector<double> variance;
   int thinning_unit = 1;
-  ReplicateSamples replicates{};  ///< counts of each pair once, in each replicate; empty: too many, or thinned
+  ReplicateSamples
+      replicates{};  ///< counts of each pair once, in each replicate; empty: too many, or thinned
 };
 
 /// Counts S_ij, the lines on which surfaces i and j follow each other, as sorted lists of pairs i <= j (i =
@@ -58,8 +59,8 @@ class PairCounts {
     float spread;         ///< sum over the replicates of (count - mean)^2
   };
   struct Block {
-    std::vector<PairCount> pairs;  ///< keys ascend
-    std::vector<Sample> samples;   ///< of those in sampled rows
+    std::vector<PairCount> pairs;              ///< keys ascend
+    std::vector<Sample> samples;               ///< of those in sampled rows
     std::vector<std::vector<PairCount>> ends;  ///< the pairs at the end of each replicate
   };
   struct Scratch {

@@ -121,8 +121,11 @@ LineSums sum_over_lines(const LineScene& scene, const LineOptions& options, int 
   const double swept = static_cast<double>(directions) * options.replicates;
   const auto row = result.pattern.row_begin.begin() + scene.open_surface;
   const bool closed = row[0] == row[1];
-  return {std::move(result), 2 * scene.spacing * scene.spacing / swept,
-          closed ? mean_chord(chords, 0.5 * static_cast<double>(found), swept) : MeanChord{}, leaked, found,
+  return {std::move(result),
+          2 * scene.spacing * scene.spacing / swept,
+          closed ? mean_chord(chords, 0.5 * static_cast<double>(found), swept) : MeanChord{},
+          leaked,
+          found,
           std::int64_t{directions} * options.replicates};
 }
 

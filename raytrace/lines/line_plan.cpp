@@ -67,9 +67,10 @@ void refuse_wasted_lines(const LineScene& scene, const LineOptions& options, int
   const double asked = 2 * sweeps * options.lines_per_disc * static_cast<double>(scene.x.size());
   if (lines <= affordable || lines <= wasted * asked || scene.x.empty()) return;
   throw InputError(advised(
-      fmt::format("lines: {:.2g} lines, {:.2g} m apart, across all the space between the walls for {:.2g} that end on "
-                  "spheres (small spheres between far walls, or sizes too different)",
-                  lines, scene.spacing, asked),
+      fmt::format(
+          "lines: {:.2g} lines, {:.2g} m apart, across all the space between the walls for {:.2g} that end on "
+          "spheres (small spheres between far walls, or sizes too different)",
+          lines, scene.spacing, asked),
       "use paths or embree, whose rays start where the spheres are, or fewer rays"));
 }
 

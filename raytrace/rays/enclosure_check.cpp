@@ -235,7 +235,8 @@ std::vector<std::string> turn_meshes_to_particles(Bed& bed, const Box& region) {
   Bed turned = bed;
   std::vector<std::string> notes;
   for (std::size_t w = 0; w < check.backs.size(); ++w)
-    if (Wall& wall = turned.walls[static_cast<std::size_t>(enclosure.wall[w])]; is_mesh(wall) && faces_away(check, w))
+    if (Wall& wall = turned.walls[static_cast<std::size_t>(enclosure.wall[w])];
+        is_mesh(wall) && faces_away(check, w))
       notes.push_back(turn(wall));
   if (notes.empty()) return {};
   auto laid = turned.walls;

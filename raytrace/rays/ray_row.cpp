@@ -30,8 +30,8 @@ void share_rows(std::vector<TracedRow>& rows, const std::vector<std::size_t>& mi
   std::vector<TracedRow::Part> parts;
   for (const std::size_t k : mine) {
     const TracedRow& row = rows[k];
-    heads.push_back({k, row.entries.size(), row.parts.size(), row.launched, row.leaked, row.chords, row.chord_sum_m,
-                     row.chord_square_sum_m2, row.stated});
+    heads.push_back({k, row.entries.size(), row.parts.size(), row.launched, row.leaked, row.chords,
+                     row.chord_sum_m, row.chord_square_sum_m2, row.stated});
     entries.insert(entries.end(), row.entries.begin(), row.entries.end());
     parts.insert(parts.end(), row.parts.begin(), row.parts.end());
   }

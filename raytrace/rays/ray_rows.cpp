@@ -375,13 +375,14 @@ std::vector<std::int64_t> rays_per_surface(const Enclosure& enclosure, const std
 }
 
 void spare_wide_walls(std::vector<std::int64_t>& rays, std::size_t spheres, double rays_per_particle) {
-  constexpr double worth = 600, least_worth = 6, many_rays = 6e6;  // of a box: 100 times a particle's from each face
+  constexpr double worth = 600, least_worth = 6,
+                   many_rays = 6e6;  // of a box: 100 times a particle's from each face
   if (spheres == 0) return;
   const auto first_wall = rays.begin() + static_cast<std::ptrdiff_t>(spheres);
   const double from_spheres = std::accumulate(rays.begin(), first_wall, 0.0);
   const double from_walls = std::accumulate(first_wall, rays.end(), 0.0);
-  const double most = std::max({from_spheres, least_worth * rays_per_particle,
-                                std::min(worth * rays_per_particle, many_rays)});
+  const double most = std::max(
+      {from_spheres, least_worth * rays_per_particle, std::min(worth * rays_per_particle, many_rays)});
   if (from_walls <= most) return;
   for (auto wall = first_wall; wall != rays.end(); ++wall) {
     const auto own = static_cast<double>(*wall);

@@ -81,7 +81,8 @@ void write_rays(Hdf5Writer& out, const HitCounts& counts) {
                counts.variance_factor[kind]);
   out.attribute("/rays", "leaked", std::vector<std::int64_t>{counts.leaked});
   out.attribute("/rays", "thinning_unit", std::vector<std::int64_t>{counts.thinning_unit});
-  if (counts.directions > 0) out.attribute("/rays", "directions", std::vector<std::int64_t>{counts.directions});
+  if (counts.directions > 0)
+    out.attribute("/rays", "directions", std::vector<std::int64_t>{counts.directions});
   out.attribute("/rays", "sum_variance_factor", counts.sum_variance_factor);
   out.attribute("/rays", "mean_chord_m", counts.mean_chord_m);
   out.attribute("/rays", "mean_chord_error_m", counts.mean_chord_error_m);
@@ -242,7 +243,8 @@ HitCounts read_rays(const Hdf5Reader& in, std::size_t surfaces) {
         read_some<double>(in, fmt::format("/rays/variance_factor/{}", pair_kind_names[kind]));
   counts.leaked = in.integer_attribute("/rays", "leaked");
   counts.thinning_unit = in.integer_attribute("/rays", "thinning_unit");
-  if (in.has_attribute("/rays", "directions")) counts.directions = in.integer_attribute("/rays", "directions");
+  if (in.has_attribute("/rays", "directions"))
+    counts.directions = in.integer_attribute("/rays", "directions");
   counts.sum_variance_factor = in.real_attribute("/rays", "sum_variance_factor");
   counts.mean_chord_m = in.real_attribute("/rays", "mean_chord_m");
   counts.mean_chord_error_m = in.real_attribute("/rays", "mean_chord_error_m");

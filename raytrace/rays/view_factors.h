@@ -26,7 +26,7 @@ struct TraceOptions {
                                    << 30;  ///< of tracing and closing; see HitCounts::thinning_unit
   /// > 1: that many replicates, their hits kept apart in HitCounts::parts (as long as there are fewer than 5e7 rays).
   int kept_replicates = 0;
-  TraceWatch watch{};                      ///< progress of the present round, and whether to go on
+  TraceWatch watch{};  ///< progress of the present round, and whether to go on
 };
 
 /// What a trace spent, and how well it knows what it states.

@@ -123,9 +123,10 @@ void refuse_what_shading_cannot_serve(const Enclosure& enclosure, double rays_pe
                of_walls = std::accumulate(wall, area.end(), 0.0);
   if (const double due = rays_per_particle * of_spheres / of_walls; of_spheres > 0 && due < fewest_rays)
     problems.push_back(advised(
-        fmt::format("shading: {:.2g} of the walls' rays would meet a sphere (the walls are {:.2g} times as wide as all "
-                    "spheres; their rays tell what a sphere and a wall exchange)",
-                    due, of_walls / of_spheres),
+        fmt::format(
+            "shading: {:.2g} of the walls' rays would meet a sphere (the walls are {:.2g} times as wide as all "
+            "spheres; their rays tell what a sphere and a wall exchange)",
+            due, of_walls / of_spheres),
         "choose source = paths or embree, or more rays"));
   if (!problems.empty()) throw InputError(problems);
 }

@@ -107,7 +107,8 @@ TEST(CorrelationSource, APatchAndTheWallItLiesOnShareWhatThePlaneGets) {
   const auto bare = bed(channel, 0.25, 3);
   Enclosure patched = bare;
   patched.walls.push_back(
-      {.name = "patch", .vertices = {{0.003, 0.001, 0}, {0.006, 0.001, 0}, {0.006, 0.003, 0}, {0.003, 0.003, 0}}});
+      {.name = "patch",
+       .vertices = {{0.003, 0.001, 0}, {0.006, 0.001, 0}, {0.006, 0.003, 0}, {0.003, 0.003, 0}}});
   cover_walls(patched.walls);
   patched.wall.push_back(static_cast<std::int32_t>(patched.wall.size()));
   ASSERT_EQ(patched.walls.size(), 7u);

@@ -86,8 +86,7 @@ TEST(SourcesAgree, LinesRefuseSizesTooDifferent) {
 
 /// A small sphere off the middle of a box a thousand times as wide: few rays, and errors that are those of the scatter.
 TEST(SourcesAgree, WideBoxCostsLittleAndStatesItsErrors) {
-  const Enclosure e =
-      boxed(spheres_in_open_space({{0.3, 0.4, 0.6}}, {0.0005}), {{0, 0, 0}, {1, 1, 1}});
+  const Enclosure e = boxed(spheres_in_open_space({{0.3, 0.4, 0.6}}, {0.0005}), {{0, 0, 0}, {1, 1, 1}});
   constexpr int seeds = 12;
   double squares = 0, variances = 0;
   for (int seed = 1; seed <= seeds; ++seed) {
@@ -117,9 +116,11 @@ Case three_sizes() {
   for (std::size_t w = 0; w < 6; ++w) c.wall(w).temperature_K = 400 + 100 * static_cast<double>(w);
   c.add_sphere({0.0035, 0.005, 0.005}, 0.002, 300, 0.9);
   for (int k = 0; k < 27; ++k)
-    c.add_sphere({0.007 + 0.001 * (k % 3), 0.002 + 0.003 * (k / 3 % 3), 0.002 + 0.003 * (k / 9)}, 2e-4, 500, 0.7);
+    c.add_sphere({0.007 + 0.001 * (k % 3), 0.002 + 0.003 * (k / 3 % 3), 0.002 + 0.003 * (k / 9)}, 2e-4, 500,
+                 0.7);
   for (int k = 0; k < 64; ++k)
-    c.add_sphere({0.0065 + 0.001 * (k % 4), 0.0012 + 0.0024 * (k / 4 % 4), 0.0012 + 0.0024 * (k / 16)}, 2e-5, 900, 0.95);
+    c.add_sphere({0.0065 + 0.001 * (k % 4), 0.0012 + 0.0024 * (k / 4 % 4), 0.0012 + 0.0024 * (k / 16)}, 2e-5,
+                 900, 0.95);
   return c;
 }
 
@@ -146,8 +147,8 @@ TEST(SourcesAgree, HeatsOfThreeSizesAndMaterials) {
       for (const auto& [radius, heat] : classes) {
         const auto& theirs = others.at(radius);
         EXPECT_LE(std::abs(heat.first - theirs.first), 3 * std::hypot(heat.second, theirs.second) + 1e-15)
-            << one << " and " << other << ", radius " << radius << ": " << heat.first << " +- " << heat.second << ", "
-            << theirs.first << " +- " << theirs.second;
+            << one << " and " << other << ", radius " << radius << ": " << heat.first << " +- " << heat.second
+            << ", " << theirs.first << " +- " << theirs.second;
         EXPECT_LT(heat.second, 0.06 * std::abs(heat.first)) << one << ", radius " << radius;
       }
   EXPECT_NE(refusal(settings(RadiationKind::shading, 10000), c).find("equal spheres"), std::string::npos);
@@ -169,7 +170,8 @@ std::pair<double, double> found_and_stated(RadiationKind kind, double rays, cons
 /// large).
 void expect_true_errors(int seeds, double low, double high) {
   for (const double emissivity : {1.0, 0.4})
-    for (const auto& [kind, rays] : {std::pair{RadiationKind::embree, 200.0}, {RadiationKind::lines, 1000.0}}) {
+    for (const auto& [kind, rays] :
+         {std::pair{RadiationKind::embree, 200.0}, {RadiationKind::lines, 1000.0}}) {
       const auto [found, stated] = found_and_stated(kind, rays, path_cases::small_bed(emissivity), seeds);
       std::printf("  emissivity %.1f, %s: stated / found %.3f\n", emissivity,
                   kind == RadiationKind::embree ? "embree" : "lines", stated / found);

@@ -325,8 +325,8 @@ TEST(ZeroHits, BoundOfLinesIsExceededInOnePercent) {
         judged += exact > zero_hit_bound(c)[0];
         exceeded += hits(c, 0, 1) == 0 && exact > zero_hit_bound(c)[0];
       }
-      std::printf("lines, ratio %.0f, %.0f a disc, %d directions: bound exceeded in %.2f %%\n", ratio, lines_per_disc,
-                  o.directions, 100.0 * exceeded / trials);
+      std::printf("lines, ratio %.0f, %.0f a disc, %d directions: bound exceeded in %.2f %%\n", ratio,
+                  lines_per_disc, o.directions, 100.0 * exceeded / trials);
       EXPECT_GT(judged, trials / 2);
       EXPECT_LE(exceeded, 23);  // 1 % of 1000 and 4 sigma
     }

@@ -263,10 +263,11 @@ TEST(WallsInOnePlace, AdiabaticBaffleOfTwoSidesIsTheSameAsSheetAndPolygons) {
       {0.005, 0.005, 0.001}, {0.005, 0.009, 0.001}, {0.005, 0.009, 0.009}, {0.005, 0.005, 0.009}};
   std::string room_text = "[box]\nsize_m = [0.01, 0.01, 0.01]\n";
   for (const auto& wall : box_walls(room))
-    room_text += fmt::format("[walls.{}]\nrole = \"isothermal\"\ntemperature_K = {}\nemissivity = 1\n", wall.name,
-                             wall.name == "x_min" ? hot_K : cold_K);
+    room_text += fmt::format("[walls.{}]\nrole = \"isothermal\"\ntemperature_K = {}\nemissivity = 1\n",
+                             wall.name, wall.name == "x_min" ? hot_K : cold_K);
   const auto adiabatic = [](const std::string& name, const Corners& corners) {
-    return fmt::format("[[polygon]]\nname = \"{}\"\nvertices_m = {}\nrole = \"adiabatic\"\n", name, list(corners));
+    return fmt::format("[[polygon]]\nname = \"{}\"\nvertices_m = {}\nrole = \"adiabatic\"\n", name,
+                       list(corners));
   };
   const auto sheet = [](const std::string& more) {
     return "[[mesh]]\nname = \"sheet\"\nfile = \"sheet.stl\"\nrole = \"adiabatic\"\n" + more;
@@ -277,7 +278,8 @@ TEST(WallsInOnePlace, AdiabaticBaffleOfTwoSidesIsTheSameAsSheetAndPolygons) {
       {"sheet", {room_text + sheet(""), behind, 5e-4, {{"sheet.stl", stl({plate, reversed(plate)})}}}},
       {"two_sided", {room_text + sheet("two_sided = true\n"), behind, 5e-4, {{"sheet.stl", stl({plate})}}}},
   };
-  const Measured none = heat({room_text, behind}, "paths", 30000), first = heat(ways[0].second, "paths", 30000);
+  const Measured none = heat({room_text, behind}, "paths", 30000),
+                 first = heat(ways[0].second, "paths", 30000);
   EXPECT_LT(first.heat_W, 0.7 * none.heat_W) << "it shades";
   EXPECT_GT(first.heat_W, 0.05 * none.heat_W);
   for (const auto& [name, scene] : ways) {
@@ -319,16 +321,20 @@ TEST(WallsInOnePlace, VesselsAsTheyComeAreMendedAndTurnedWithANote) {
     return stl(faces);
   };
   const auto written = [&](bool outward, bool rough) {
-    return Written{mesh("vessel", hot_K) + "[surroundings]\ntemperature_K = 300\n", above, 5e-4,
+    return Written{mesh("vessel", hot_K) + "[surroundings]\ntemperature_K = 300\n",
+                   above,
+                   5e-4,
                    {{"vessel.stl", vessel(outward, rough)}}};
   };
   const double expected = 4 * pi * 5e-4 * 5e-4 * (exitance(hot_K) - exitance(cold_K));
   for (const std::string source : {"paths", "embree"})
     for (const bool rough : {false, true}) {
-      const Measured in = heat(written(false, rough), source, 5000), out = heat(written(true, rough), source, 5000);
+      const Measured in = heat(written(false, rough), source, 5000),
+                     out = heat(written(true, rough), source, 5000);
       EXPECT_LE(std::abs(in.heat_W - expected), 4 * in.error_W + 1e-9 * expected);
       EXPECT_LE(std::abs(out.heat_W - expected), 4 * out.error_W + 1e-9 * expected);
-      EXPECT_NE(out.notes.find("vessel faced away from the particles and was turned"), std::string::npos) << out.notes;
+      EXPECT_NE(out.notes.find("vessel faced away from the particles and was turned"), std::string::npos)
+          << out.notes;
       EXPECT_EQ(in.notes.find("turned"), std::string::npos) << in.notes;
       if (!rough) continue;
       EXPECT_NE(in.notes.find("without area"), std::string::npos) << in.notes;
