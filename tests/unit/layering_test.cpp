@@ -57,11 +57,12 @@ const std::map<std::string, std::vector<std::string>> arrows = [] {
   const Folders mesh = join({bed, {"dem/mesh/"}});
   const Folders scene = join({io, mesh, {"dem/scene/"}}), packing = join({bed, {"dem/packing/"}});
   const Folders engine = join({scene, {"dem/engine.h", "dem/step_clock.h", "dem/step_limit.h"}});
-  const Folders enclosure = join({bed,
-                                  ranks,
-                                  {"raytrace/enclosure.h", "raytrace/exact.h", "raytrace/exchange.h",
-                                   "raytrace/exchange_source.h", "raytrace/facets.h", "raytrace/mesh_check.h",
-                                   "raytrace/same_geometry.h", "raytrace/stated_error.h"}});
+  const Folders enclosure =
+      join({bed,
+            ranks,
+            {"raytrace/balancing.h", "raytrace/enclosure.h", "raytrace/exact.h", "raytrace/exchange.h",
+             "raytrace/exchange_source.h", "raytrace/facets.h", "raytrace/mesh_check.h",
+             "raytrace/same_geometry.h", "raytrace/stated_error.h"}});
   const Folders embree = join({enclosure, {"raytrace/embree/"}}), rays = join({embree, {"raytrace/rays/"}});
   const Folders line_pass = join({embree, {"raytrace/line_pass/"}});
   const Folders lines = join({rays, line_pass, {"raytrace/lines/"}}),
