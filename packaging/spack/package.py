@@ -20,5 +20,5 @@ class Granrad(CMakePackage):
     depends_on("py-h5py", when="+python", type="run")
 
     def cmake_args(self):
-        return [self.define("GRANRAD_TESTS", False), self.define("GRANRAD_LIGGGHTS_ENGINE", False),
+        return [self.define("GRANRAD_TESTS", False), self.define("GRANRAD_LIGGGHTS_ENGINE", False), self.define("GRANRAD_MPI", False),
                 self.define_from_variant("GRANRAD_PYTHON", "python")]
