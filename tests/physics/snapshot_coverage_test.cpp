@@ -1,6 +1,6 @@
 // Requirement: the stated errors of fitted coefficients hold for real snapshots: equilibrated hard spheres, traced. The truth
 // is the fit to all of many beds; each group of four is a user who has four. 95 % intervals cover it in 93 to 97 % of the
-// groups (390 groups, whose coefficients hang together: the mean is known to about 0.8 %).
+// groups (390 groups, whose coefficients hang together: the mean is known to about 0.8 %; found: 94.3 %).
 // Planted error: samples taken as independent, whatever bed they are of (81 % in all, pairs of the transmittance form 54 %).
 #include <gtest/gtest.h>
 
