@@ -57,10 +57,13 @@ void refuse_spheres_behind_box_walls(const Bed& bed, const Enclosure& enclosure,
     for (std::size_t s = 0; s < enclosure.sphere_count(); ++s)
       if (dot(normal, enclosure.centre_m[s] - wall.vertices[0]) < 0 && behind++ == 0) first = s;
     if (behind > 0)
-      problems.push_back(
-          fmt::format("{} particles have their centre behind wall {}, first particle {} (a particle "
-                      "must lie inside the box): enlarge the box or drop them",
-                      behind, wall.name, bed.id[enclosure.particle[first]]));
+      problems.push_back(behind == enclosure.sphere_count()
+                             ? advised(fmt::format("wall {} turns its back to all particles", wall.name),
+                                       "turn it (flip = true)")
+                             : advised(fmt::format("{} particles have their centre behind wall {}, first "
+                                                   "particle {} (a particle must lie inside the box)",
+                                                   behind, wall.name, bed.id[enclosure.particle[first]]),
+                                       "enlarge the box, or drop them"));
   }
   if (!problems.empty()) throw InputError(problems);
 }
