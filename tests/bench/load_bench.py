@@ -12,9 +12,9 @@ import tempfile
 import time
 
 BUSY = "while True: pass"
-CASES = (("plug", "demo.toml", ["scene.end_time_s=0.2", "radiation.source=\"none\""]),
-         ("plug_paths", "demo.toml", ["scene.end_time_s=0.05"]),
-         ("moving_bed", "moving_bed_short.toml", ["scene.end_time_s=0.02"]))
+CASES = (("plug", "demo.toml", ["scene.end_time_s=0.05", "radiation.source=\"none\""]),
+         ("plug_paths", "demo.toml", ["scene.end_time_s=0.02"]),
+         ("moving_bed", "moving_bed_short.toml", ["scene.end_time_s=0.005"]))
 
 
 def seconds(granrun, scene, sets, threads):

@@ -1,6 +1,6 @@
 // Requirement: the quota of a container or a batch job is found, whichever control groups give it.
 //
-// To plant: the group's own file alone, not those above it; "max" read as 0.
+// Planted: the group's own file alone, not those above it; "max" read as 0.
 #include "dem/base/processors.h"
 
 #include <gtest/gtest.h>
