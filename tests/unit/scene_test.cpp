@@ -339,7 +339,7 @@ TEST(InitialBed, TakesParticlesFromAFileSortedById) {
   EXPECT_EQ(bed.materials.size(), 1u);
 }
 
-// To plant: the plane of a face taken as endless: what stands in a hopper above the channel is refused.
+// Planted: the plane of a face taken as endless: what stands in a hopper above the channel is refused.
 TEST(InitialBed, AFaceBoundsOnlyAsFarAsItGoesBesideOtherWalls) {
   const TemporaryFolder folder;
   const std::string hopper =
