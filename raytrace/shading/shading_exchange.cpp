@@ -33,7 +33,7 @@ HitCounts trace_walls(const Enclosure& enclosure, const ShadingOptions& options)
   trace.threads = options.threads;
   const EmbreeTracer tracer(enclosure, options.threads);
   return trace_rows(enclosure, area, rays, trace, [&](const EmittedRay& ray) {
-    const End end = tracer.first_end(ray.start.origin_m, ray.start.direction, ray.surface);
+    const End end = tracer.first_end(ray.start.origin_m, ray.start.direction, ray.surface, ray.start.normal);
     return RayEnd{end.surface, end.distance_m};
   });
 }
