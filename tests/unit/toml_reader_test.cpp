@@ -184,6 +184,24 @@ TEST(TomlReader, SyntaxErrorsHaveAPlace) {
   EXPECT_THROW(TomlDocument::from_file("/"), IoError);
 }
 
+// Planted: comments looked at as well (the sound ones are refused).
+TEST(TomlReader, CharactersBeyondAsciiStandInQuotesAndComments) {
+  for (const char* stray :
+       {"a = 1\nv = µm", "a = 1\né = 2", "a = \"b\" Ɛ", "a = '''b''' é", "a = 1 # don't\nb = µ"}) {
+    try {
+      TomlDocument::from_string(stray, "f.toml");
+      FAIL() << stray;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("beyond ASCII"), std::string::npos) << error.what();
+    }
+  }
+  for (const char* sound : {"a = \"µ\"", "a = 1 # µ", "a = 'µ' # don't: é", "a = \"\\\"µ\"", "a = '''\n'µ'''",
+                            "a = \"\"\"\nµ\"\"\"",
+                            "\xEF\xBB\xBF"
+                            "a = 1"})
+    EXPECT_NO_THROW(TomlDocument::from_string(sound, "f.toml")) << sound;
+}
+
 TEST(TomlReader, OverridesReplaceMergeAndAreLocated) {
   auto document = TomlDocument::from_string("[a]\nx = 1\ny = 2\n[[p]]\nr = 'u'\n", "f.toml");
   document.override_value("a.x=7");

@@ -7,6 +7,7 @@
 #include "dem/base/error.h"
 #include "dem/base/suggestion.h"
 #include "dem/base/toml/shortest_numbers.h"
+#include "dem/base/toml/stray_character.h"
 #include "dem/base/toml/toml_reader_state.h"
 
 namespace granrad {
@@ -218,6 +219,7 @@ void TomlDocument::override_value(std::string_view text) {
   std::string escaped;
   for (const char c : value) escaped += (c == '\\' || c == '"') ? fmt::format("\\{}", c) : std::string(1, c);
   for (const std::string& written : {value, fmt::format("\"{}\"", escaped)}) {
+    if (stray_character(written) != written.npos || stray_character(key) != key.npos) continue;
     try {
       return merge(*into, toml::parse(fmt::format("{}={}", key, written), name));
     } catch (const toml::parse_error&) {

@@ -3,11 +3,13 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <sstream>
 
 #include "dem/base/error.h"
+#include "dem/base/toml/stray_character.h"
 #include "dem/base/units.h"
 
 namespace granrad {
@@ -54,6 +56,13 @@ std::size_t line_of_surprise(std::string_view text) {
 }  // namespace
 
 toml::table parse_toml(std::string_view text, const std::string& name) {
+  if (const auto stray = stray_character(text); stray != text.npos) {
+    const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(stray), '\n') + 1;
+    const auto before = text.rfind('\n', stray);
+    throw InputError(advised(fmt::format("{}:{}:{}: a character beyond ASCII stands outside of quotes", name,
+                                         line, before == text.npos ? stray + 1 : stray - before),
+                             "put the text in \"quotes\""));
+  }
   try {
     return toml::parse(text, name);
   } catch (const TomlSurprise&) {
