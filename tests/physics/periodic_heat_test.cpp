@@ -2,7 +2,7 @@
 // periods warms like the same bed at rest, by contacts, gas and radiation; so does a bed whose particles start in other
 // periods; profiles and solid fraction too.
 //
-// To plant: the region asked for positions as they are, not as they lie in the box: nothing conducts once a particle has
+// Planted, seen: the region asked for positions as they are, not as they lie in the box: nothing conducts once a particle has
 // crossed (the temperatures stay apart by 2 K). Fails here.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -6,10 +6,10 @@
 // of the wall at the centre / 4 pi (exact for planar walls); of a black vessel of one temperature A sigma (T_w^4 -
 // T^4). Conduction: a sphere that touches three faces gets three times what one face gives.
 //
-// To plant: the covered part left in place (the heat of the patch is off by half and more with paths); the later wall
-// cut instead of the earlier (the patch vanishes); a sheet of two sides traced without the normal of its start (the
-// plate loses a third); contact planes not told apart (the sphere sinks to 0.63 of Hertz); near walls by wall, not by
-// feature (a corner conducts a third). Each fails here.
+// Planted, seen: the covered part left in place (paths give the patch a hundredth of its heat); the later wall cut
+// instead of the earlier (the patch vanishes); a sheet of two sides traced without the normal of its start. Not yet
+// tried: contact planes not told apart (the sphere sinks to 0.63 of Hertz); near walls by wall, not by feature (a
+// corner conducts a third).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
