@@ -260,12 +260,13 @@ EOF
     cmake -S "$root" -B "$fuzz" -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_C_COMPILER=clang \
       -DCMAKE_CXX_COMPILER=clang++ -DGRANRAD_FUZZ=ON >"$fuzz.log" || { cat "$fuzz.log"; exit 1; }
     cmake --build "$fuzz" --target "${kinds[@]/#/fuzz_}"
+    say "fuzzing ${kinds[*]}, $seconds s each, $(nproc) at a time; what is found: $fuzz/found/KIND-*"
     for kind in "${kinds[@]}"; do
-      say "fuzzing $kind for $seconds s"
       mkdir -p "$fuzz/found/$kind"
-      "$fuzz/tests/fuzz_$kind" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 -close_fd_mask=3 \
-        -artifact_prefix="$fuzz/found/$kind-" "$fuzz/found/$kind" "$root/tests/fuzz/corpus/$kind"
-    done
+      echo "$kind"
+    done | xargs -P "$(nproc)" -I{} "$fuzz/tests/fuzz_{}" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 \
+      -max_len=65536 -close_fd_mask=3 -print_final_stats=1 -artifact_prefix="$fuzz/found/{}-" "$fuzz/found/{}" \
+      "$root/tests/fuzz/corpus/{}"
     say "no findings"
     ;;
   hard-cases)

@@ -117,7 +117,8 @@ def by(source, rays):
 
 def can_be_opened(scene):
     warm = {w["temperature_K"] for w in scene["walls"].values() if w["role"] == "open"}
-    return len(warm) == 1 and scene["source"] not in ("lines", "correlation")
+    # A patch on an open face would end in the air: another gas lens and another contact at its edges.
+    return len(warm) == 1 and not scene["plates"] and scene["source"] not in ("lines", "correlation")
 
 
 def few_bodies(scene):
