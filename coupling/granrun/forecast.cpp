@@ -11,7 +11,6 @@
 #include "coupling/validate/update_cost.h"
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
-#include "raytrace/paths/path_tracer.h"
 
 namespace granrad {
 
@@ -79,11 +78,11 @@ UpdateSeconds seconds_of_an_update(const Case& c, const Bed& bed, int threads) {
   const bool paths = radiation.kind == RadiationKind::paths;
   const bool shared = paths || radiation.kind == RadiationKind::embree ||
                       (radiation.kind == RadiationKind::lines && radiation.order == 0);
-  const double few = std::min(many, paths ? 2.0 * path_batches : shared ? 1.0 : many / 3);
+  const double few = many / 3;  // not fewer: rows must close
   const double with_few = std::min(with_many, update_cost(with_rays(c, few), bed, threads).wall_s);
-  const double per_ray = many > few ? (with_many - with_few) / (many - few) : 0;
+  const double per_ray = (with_many - with_few) / (many - few);
   const double all = with_many + per_ray * (radiation.rays - many);
-  return {all, shared ? with_few : all};
+  return {all, shared ? std::max(0.0, with_many - per_ray * many) : all};
 }
 
 /// Of the updates of a frozen bed after the first: its view factors are known, radiosities are solved.
