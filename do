@@ -22,6 +22,7 @@ test_tools=(hdf5-tools)
 python=(python3-dev pybind11-dev python3-numpy python3-scipy python3-h5py python3-pytest python3-pandas python3-jsonschema)
 pages=(chromium ffmpeg)
 documents=(mkdocs help2man)
+workflows=(snakemake)  # what runs the Snakefile of a study
 packaging=(dpkg-dev file)
 
 settings=()  # of the configuration
@@ -41,7 +42,9 @@ usage() {
   tidy        clang-tidy on all sources, or on those named
   format      lays the sources out
   docs        references made from the programs, and the pages as a site in build/site
-  package     a .deb of programs, library, Python, data and documents in build/package
+  package     a .deb of programs, library, Python, data and documents in build/Package
+  package-test
+              installs that package on a bare Debian (debootstrap) and tries what README promises
   fuzz-files [SECONDS]
               damaged files of each kind that is read, SECONDS each (default 60): 0 findings is the aim
   paper       every number of the paper beside ours: out/paper/paper.html (resumable; --quick: minutes)
@@ -127,12 +130,19 @@ case ${1:-} in
     (cd "$root/build/Package" && cpack -G DEB)
     ls -l "$root"/build/Package/*.deb
     ;;
+  package-test)
+    packages=(debootstrap)
+    install_missing "${packages[@]}"
+    [[ -n $(ls "$root"/build/Package/granrad*.deb 2>/dev/null) ]] || "$root/do" package
+    say "the package alone on a bare Debian"
+    "$root/packaging/try_package.sh" "$(ls -t "$root"/build/Package/granrad_*.deb | head -1)"
+    ;;
   docs)
     packages+=("${documents[@]}")
     set_up
     build granrun vfgen
     "$root/docs/make_references.sh" "$build/bin"
-    (cd "$root" && mkdocs build --quiet --config-file docs/mkdocs.yml --site-dir "$root/build/site")
+    (cd "$root" && mkdocs build --quiet --strict --config-file docs/mkdocs.yml --site-dir "$root/build/site")
     say "site: $root/build/site/index.html"
     ;;
   format)
@@ -149,7 +159,7 @@ case ${1:-} in
     ctest --test-dir "$build" -LE long -j "$(nproc)" --output-on-failure --no-tests=error
     ;;
   test-long)
-    packages+=("${liggghts_engine[@]}" "${test_tools[@]}")
+    packages+=("${liggghts_engine[@]}" "${test_tools[@]}" "${workflows[@]}")
     set_up
     build all
     say "testing (long)"

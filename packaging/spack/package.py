@@ -10,7 +10,7 @@ class Granrad(CMakePackage):
 
     depends_on("cxx", type="build")
     depends_on("cmake@3.25:", type="build")
-    for library in ("embree@3.13:3", "eigen@3.4:", "ceres-solver", "hdf5+hl", "cli11", "fmt@9:", "nlohmann-json", "boost", "libpng", "pugixml",
+    for library in ("embree@3.13:4", "eigen@3.4:", "ceres-solver", "hdf5+hl", "cli11", "fmt@9:", "nlohmann-json", "boost", "libpng", "pugixml",
                     "udunits", "tomlplusplus", "random123", "zlib-api", "libzip", "muparser"):
         depends_on(library)
     depends_on("py-pybind11", when="+python")

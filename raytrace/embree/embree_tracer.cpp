@@ -1,6 +1,10 @@
 #include "raytrace/embree/embree_tracer.h"
 
+#if GRANRAD_EMBREE_MAJOR >= 4
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 #include <fmt/format.h>
 #include <omp.h>
 
@@ -16,9 +20,29 @@ namespace granrad {
 
 namespace {
 
+// Embree 3 and 4 differ here alone: the name of what a query carries to the callbacks, and how it is handed over.
+#if GRANRAD_EMBREE_MAJOR >= 4
+using QueryContext = RTCRayQueryContext;
+
+void intersect(RTCScene scene, QueryContext& context, RTCRayHit& rayhit) {
+  rtcInitRayQueryContext(&context);
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = &context;
+  rtcIntersect1(scene, &rayhit, &arguments);
+}
+#else
+using QueryContext = RTCIntersectContext;
+
+void intersect(RTCScene scene, QueryContext& context, RTCRayHit& rayhit) {
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &rayhit);
+}
+#endif
+
 /// A ray in flight and the nearest things it has met: what the Embree callbacks read and write. Lengths in
 /// tracing units, double precision; Embree's own single-precision ray only steers the walk through the tree.
-struct Query : RTCIntersectContext {
+struct Query : QueryContext {
   Vec3 origin, direction;
   std::int32_t source_ball = -1;  ///< image the ray leaves, excluded by identity
   Vec3 source_normal{};           ///< of the wall the ray leaves, at its start, or zero
@@ -243,7 +267,6 @@ std::int32_t EmbreeTracer::Impl::face_before(const Vec3& centre, const Vec3& ori
 }
 
 void EmbreeTracer::Impl::walk(Query& query, double limit) const {
-  rtcInitIntersectContext(&query);
   RTCRayHit rayhit;
   rayhit.ray = {
       static_cast<float>(query.origin.x),
@@ -259,7 +282,7 @@ void EmbreeTracer::Impl::walk(Query& query, double limit) const {
       0,
       0};
   rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(scene, &query, &rayhit);
+  intersect(scene, query, rayhit);
 }
 
 /// A sphere that a wall cuts emits into that wall from the part behind it, at distance zero.
