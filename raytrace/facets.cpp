@@ -7,23 +7,12 @@
 
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
+#include "dem/bed/planar_cut.h"
 #include "dem/bed/wall_shape.h"
 
 namespace granrad {
 
 namespace {
-
-/// What of `polygon` lies at non-negative height above a plane (Sutherland-Hodgman, one step).
-std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, const Vec3& normal, double offset) {
-  std::vector<Vec3> kept;
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Vec3 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
-    const double ha = dot(normal, a) - offset, hb = dot(normal, b) - offset;
-    if (ha >= 0) kept.push_back(a);
-    if ((ha < 0) != (hb < 0)) kept.push_back(a + (b - a) * (ha / (ha - hb)));
-  }
-  return kept;
-}
 
 /// A square of the plane through its foot of the origin, with the given half width.
 std::vector<Vec3> large_square(const Vec3& normal, double offset, double half_width) {
@@ -164,7 +153,7 @@ std::optional<ConvexCell> ConvexCell::from(const Facets& facets) {
   for (const auto& face : cell.faces_) {
     std::vector<Vec3> whole = large_square(facets.normal(face[0]), facets.offset(face[0]), 8 * size);
     for (const auto& other : cell.faces_)
-      if (&other != &face) whole = clipped(whole, facets.normal(other[0]), facets.offset(other[0]));
+      if (&other != &face) whole = part_above(whole, facets.normal(other[0]), facets.offset(other[0]));
     double covered = 0;
     for (const std::int32_t f : face) covered += facets.area(f);
     const double area = whole.size() < 3 ? 0 : polygon_area(whole);

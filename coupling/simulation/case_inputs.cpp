@@ -72,10 +72,4 @@ void copy_inputs(const std::vector<InputFile>& inputs, const fs::path& folder) {
   }
 }
 
-std::uint64_t text_hash(const std::string& text) {
-  std::uint64_t hash = 14695981039346656037ull;
-  for (unsigned char c : text) hash = (hash ^ c) * 1099511628211ull;
-  return hash;
-}
-
 }  // namespace granrad

@@ -29,7 +29,4 @@ std::string identity_text(const TomlDocument& document, const std::vector<InputF
 /// Copies the inputs below `folder`; one that is there already with the same content stays. Throws IoError.
 void copy_inputs(const std::vector<InputFile>& inputs, const std::filesystem::path& folder);
 
-/// 64-bit FNV-1a of a text: tells scenes apart, no more.
-std::uint64_t text_hash(const std::string& text);
-
 }  // namespace granrad

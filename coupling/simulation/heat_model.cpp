@@ -165,30 +165,16 @@ void HeatModel::advance(Bed& bed, double dt_s) {
 
 StateBlock HeatModel::save() const {
   StateBlock block;
-  block.integers["updates"] = {radiation_.updates};
-  block.integers["rays"] = {radiation_.rays};
-  block.integers["lost_rays"] = {radiation_.lost_rays};
-  block.reals["wall_heat_W"] = {radiation_.wall_heat_W};
-  block.reals["missed_W"] = {radiation_.missed_W};
-  block.reals["error_squared_W2"] = {radiation_.error_squared_W2};
-  block.reals["closure_correction"] = {radiation_.closure_correction};
-  block.reals["absolute_heat_W"] = {radiation_.absolute_heat_W};
-  block.reals["limited_share"] = {radiation_.limited_share};
-  block.integers["implicit_updates"] = {radiation_.implicit_updates};
+  visit_totals(
+      radiation_, [&](const char* name, std::int64_t value) { block.integers[name] = {value}; },
+      [&](const char* name, double value) { block.reals[name] = {value}; });
   return block;
 }
 
 void HeatModel::load(const StateBlock& radiation, const StateBlock& ledger) {
-  radiation_.updates = saved_integer(radiation, "updates");
-  radiation_.rays = saved_integer(radiation, "rays");
-  radiation_.lost_rays = saved_integer(radiation, "lost_rays");
-  radiation_.wall_heat_W = saved_real(radiation, "wall_heat_W");
-  radiation_.missed_W = saved_real(radiation, "missed_W");
-  radiation_.error_squared_W2 = saved_real(radiation, "error_squared_W2");
-  radiation_.closure_correction = saved_real(radiation, "closure_correction");
-  radiation_.absolute_heat_W = saved_real(radiation, "absolute_heat_W");
-  radiation_.limited_share = saved_real(radiation, "limited_share");
-  radiation_.implicit_updates = saved_integer(radiation, "implicit_updates");
+  visit_totals(
+      radiation_, [&](const char* name, std::int64_t& value) { value = saved_integer(radiation, name); },
+      [&](const char* name, double& value) { value = saved_real(radiation, name); });
   ledger_.load(ledger);
 }
 

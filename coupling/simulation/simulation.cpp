@@ -11,6 +11,7 @@
 #include "coupling/heat/heat_step.h"
 #include "coupling/simulation/radiation_source.h"
 #include "dem/base/error.h"
+#include "dem/base/files/text_file.h"
 #include "dem/io/saved_state.h"
 #include "dem/ranks/ranks.h"
 #include "raytrace/rays/enclosure_check.h"

@@ -106,4 +106,15 @@ bool CornerSet::insert_into(Polygon& polygon, const std::function<bool(const Vec
   return grown;
 }
 
+Polygon part_above(const Polygon& polygon, const Vec3& normal, double offset) {
+  Polygon kept;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec3 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
+    const double ha = dot(normal, a) - offset, hb = dot(normal, b) - offset;
+    if (ha >= 0) kept.push_back(a);
+    if ((ha < 0) != (hb < 0)) kept.push_back(a + (b - a) * (ha / (ha - hb)));
+  }
+  return kept;
+}
+
 }  // namespace granrad

@@ -13,6 +13,9 @@ namespace granrad {
 std::vector<std::vector<Vec3>> difference(const std::vector<Vec3>& polygon, const WallFace& face,
                                           const Vec3& normal, double slack_m, double thin_m);
 
+/// What of a convex polygon lies at non-negative height over the plane dot(normal, p) = offset (Sutherland-Hodgman).
+std::vector<Vec3> part_above(const std::vector<Vec3>& polygon, const Vec3& normal, double offset);
+
 /// Corners, each once.
 class CornerSet {
  public:

@@ -65,11 +65,8 @@ const std::vector<std::pair<Quantity, Words>>& plain_vectors() {
   return all;
 }
 
-/// What a mistyped or foreign name is compared with.
-const Words& known_words() {
-  static const Words words{"temperature", "temp", "radius", "diameter", "material", "velocity", "omega"};
-  return words;
-}
+const Words known_words{"temperature", "temp",     "radius", "diameter",
+                        "material",    "velocity", "omega"};  ///< for mistyped and foreign names
 
 Quantity meaning(const std::string& known_word) {
   using enum Quantity;
@@ -171,8 +168,8 @@ void ColumnNames::refuse_near_misses() {
   for (std::size_t c = 0; c < names_.size(); ++c) {
     const std::string text = bare(names_[c]);
     if (taken(c) || text.size() < 4 || text.find("magnitude") != text.npos) continue;
-    std::string meant = closest_word(text, known_words());
-    for (const std::string& word : known_words())
+    std::string meant = closest_word(text, known_words);
+    for (const std::string& word : known_words)
       if (text.starts_with(word + "_") || text.starts_with(word + " ") || text.starts_with(word + "(") ||
           text.starts_with(word + "["))
         meant = word;

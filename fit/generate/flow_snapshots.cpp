@@ -4,10 +4,9 @@
 #include <glob.h>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 #include "dem/base/error.h"
+#include "dem/base/files/text_file.h"
 #include "dem/base/program.h"
 
 namespace granrad {
@@ -53,24 +52,11 @@ void read_enclosure_settings(TomlTable& table, EnclosureSettings& s) {
   s.radius_m = table.number({"radius_m", "of files without radii"}, {.unit = "m", .min = 0}, 0);
 }
 
-/// FNV-1a: tells runs of other scenes and settings apart.
-std::string fingerprint(const std::string& text) {
-  std::uint32_t h = 2166136261u;
-  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 16777619u;
-  return fmt::format("{:08x}", h);
-}
-
-std::string content(const fs::path& file) {
-  std::stringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
-
 FlowRow scene_row(const FlowSettings& s, const fs::path& scene, double solid_fraction,
                   const fs::path& folder) {
   FlowRow row;
   row.name = scene.stem().string();
-  const std::string text = content(scene);
+  const std::string text = read_text_file(scene);
   const bool fed = text.find("[feed]") != std::string::npos;
   for (int seed = 1; seed <= s.seeds; ++seed) {
     FlowRun run;
@@ -81,7 +67,7 @@ FlowRow scene_row(const FlowSettings& s, const fs::path& scene, double solid_fra
     if (fed) run.set.push_back(fmt::format("feed.seed={}", seed));
     std::string depends = text;
     for (const auto& assignment : run.set) depends += " " + assignment;
-    const auto name = fmt::format("{}_{:02}_{}", row.name, seed, fingerprint(depends));
+    const auto name = fmt::format("{}_{:02}_{:016x}", row.name, seed, text_hash(depends));
     run.folder =
         folder / "runs" / (solid_fraction > 0 ? fmt::format("phi_{:.4f}_{}", solid_fraction, name) : name);
     row.runs.push_back(run);

@@ -83,8 +83,8 @@ CsvTable read_csv(const std::filesystem::path& file, bool whole) {
       table.rows.push_back(std::move(cells));
       table.line.push_back(number);
     } else if (whole) {
-      throw InputError(
-          fmt::format("{}:{}: {} cells for {} columns", table.file, number, cells.size(), table.names.size()));
+      throw InputError(fmt::format("{}:{}: {} cells for {} columns", table.file, number, cells.size(),
+                                   table.names.size()));
     }
   }
   return table;

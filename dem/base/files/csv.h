@@ -23,8 +23,8 @@ struct CsvTable {
   std::vector<std::vector<std::string>> rows;  ///< as many cells as names; others are left out
   std::vector<int> line;                       ///< of each row in the file, from 1
 
-  std::size_t find(const std::string& name) const;    ///< place of a column, or nowhere
-  std::size_t column(const std::string& name) const;  ///< throws InputError, naming the file
+  std::size_t find(const std::string& name) const;             ///< place of a column, or nowhere
+  std::size_t column(const std::string& name) const;           ///< throws InputError, naming the file
   std::vector<double> numbers(const std::string& name) const;  ///< cell_number of each row; throws InputError
 };
 

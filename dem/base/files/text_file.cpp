@@ -49,8 +49,15 @@ std::string read_text_file(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::stringstream text;
   text << in.rdbuf();
-  if (!in || std::filesystem::is_directory(file)) throw IoError(fmt::format("{}: cannot be read", file.string()));
+  if (!in || std::filesystem::is_directory(file))
+    throw IoError(fmt::format("{}: cannot be read", file.string()));
   return text.str();
+}
+
+std::uint64_t text_hash(const std::string& text) {
+  std::uint64_t hash = 14695981039346656037ull;
+  for (unsigned char c : text) hash = (hash ^ c) * 1099511628211ull;
+  return hash;
 }
 
 }  // namespace granrad
