@@ -23,7 +23,8 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 Quantities of_run(const fs::path& folder) {
   Quantities all;
-  const Results results = summarise(read_history(folder / "history.csv"));
+  const Results results =
+      summarise(CaseFolder(folder), read_case(folder / "scene.toml", {}));  // its own window
   for (const auto& [name, average] : results.column) all[name] = {average.mean, average.standard_error};
   all["energy_defect_max"] = {results.largest_energy_defect, 0};
   all["final_mean_temperature_K"] = {results.final_mean_temperature_K, 0};
