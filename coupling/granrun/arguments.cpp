@@ -48,7 +48,10 @@ void add_common(CLI::App* command, Arguments& a) {
 }
 
 void add_scene_edits(CLI::App* command, Arguments& a) {
-  command->add_option("--set", a.overrides, "override a scene value, e.g. --set radiation.rays=1000")
+  command
+      ->add_option(
+          "--set", a.overrides,
+          "override a scene value, e.g. --set radiation.rays=1000; files: from here, else beside the scene")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   command->add_option("--unset", a.removed, "take a key out of the scene, e.g. --unset feed.mass_flow_kg_s")

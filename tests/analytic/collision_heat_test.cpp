@@ -1,7 +1,7 @@
 // Requirement: one elastic collision passes the heat of Hertz' contact, whatever the heat step.
 //
-// Q = (T_j - T_i) c Int sqrt(A) dt with c = 2 k (Y/Y_real)^p. To plant: the conductance of the end of the interval (0,
-// or several times too much).
+// Q = (T_j - T_i) c Int sqrt(A) dt with c = 2 k (Y/Y_real)^p. Planted, seen to fail: the conductance of the end of the
+// interval.
 #include <gtest/gtest.h>
 
 #include <cmath>

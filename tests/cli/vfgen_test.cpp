@@ -12,7 +12,6 @@
 #include "raytrace/exact.h"
 #include "raytrace/rays/view_factor_file.h"
 #include "tests/scene_text.h"
-#include "tests/scene_text.h"
 #include "tests/source_dir.h"
 
 namespace {
@@ -400,7 +399,8 @@ diameter_m = "0.8 mm"
 temperature_K = 300
 [box]
 size_m = [0.006, 0.004, 0.008]
-)" + granrad::scene_text::walls({}) + R"([feed]
+)" + granrad::scene_text::walls({}) +
+                               R"([feed]
 kind = "plug"
 solid_fraction = 0.2
 mass_flow_kg_s = "2 g/s"

@@ -2,8 +2,7 @@
 // turned faces, plates seen from behind, particles outside, walls in other units. A sound one passes without a word, and
 // a mesh that faces away from its bed is turned.
 //
-// To plant: backs counted by number of faces instead of by rays (the sound hopper is refused); a wall of closed body taken
-// for one that faces away. Fails here.
+// Planted, seen to fail: rays that meet the back of a wall not counted.
 #include "raytrace/rays/enclosure_check.h"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,7 @@
 // Requirement: a small sphere moves right beside and upon spheres many times its size, at any stiffness and step.
 //
-// To plant: one fixed-point scale for all (that of the largest); every test here sees it: the small sphere
-// stands still. The second body's force in the first's units; the saddle sees it. Torques in the units of
-// forces; rolling down the slope sees it.
+// Planted, seen to fail: one fixed-point scale for all, that of the largest (the small sphere stands still on the
+// slope); the second body's force in the first's units (the saddle). Torques in the units of forces are not seen here.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -274,5 +274,29 @@ TEST(Suggestion, FindsTheClosestWordOrNone) {
   EXPECT_EQ(closest_word("completely", {"different"}), "");
 }
 
+// Planted, seen to fail: looked for beside the scene alone.
+TEST(TomlReader, FilesOfOverridesLieWhereTheCommandIsGivenOrBesideTheScene) {
+  const TemporaryFolder folder;
+  const auto scenes = folder.path() / "scenes";
+  std::filesystem::create_directories(scenes);
+  folder.write("here.csv", "1"), folder.write("scenes/beside.csv", "2"), folder.write("both.csv", "3");
+  folder.write("scenes/both.csv", "4");
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  const auto found = [&](const std::string& name, bool overridden) {
+    std::ofstream(scenes / "s.toml") << "f = \"" << (overridden ? "both.csv" : name) << "\"\n";
+    auto document = TomlDocument::from_file(scenes / "s.toml");
+    if (overridden) document.override_value("f=" + name);
+    const auto file = document.root().file("f", true);
+    return problems_of(document).empty() ? std::filesystem::relative(file, folder.path()) : "";
+  };
+  EXPECT_EQ(found("here.csv", true), "here.csv");
+  EXPECT_EQ(found("beside.csv", true), "scenes/beside.csv");
+  EXPECT_EQ(found("both.csv", true), "both.csv");
+  EXPECT_EQ(found("both.csv", false), "scenes/both.csv");
+  EXPECT_EQ(found("here.csv", false), "");
+  std::filesystem::current_path(before);
+}
+
 }  // namespace
 }  // namespace granrad

@@ -185,7 +185,12 @@ fs::path TomlTable::file(const Key& key, bool required) {
   }
   const fs::path beside = (node_->state->folder / name->get()).lexically_normal();
   fs::path& found = node_->state->files[node_->path_of(key.name)];
-  found = fs::is_regular_file(beside) ? beside : installed_file(name->get());
+  // What --set names lies, first of all, where the command is given.
+  const bool given_in_shell = node->source().path && node->source().path->starts_with(override_mark);
+  const fs::path here = fs::absolute(name->get()).lexically_normal();
+  found = given_in_shell && fs::is_regular_file(here) ? here
+          : fs::is_regular_file(beside)               ? beside
+                                                      : installed_file(name->get());
   if (!found.empty()) return found;
   node_->state->files.erase(node_->path_of(key.name));
   node_->state->add_at(*node, node_->path_of(key.name), fmt::format("no such file: {}", beside.string()));
