@@ -105,12 +105,15 @@ case ${1:-} in
   sanitize)
     packages+=("${test_tools[@]}")
     set_up
+    shift
+    libraries='[a-z]+'
+    [[ ${1:-} == --fast ]] && libraries='(base|files|toml|bed|mesh|scene|dem)'
     say "unit tests under sanitizers"
     cmake --preset Sanitize -S "$root" >"$root/build/sanitize.log" 2>&1 || { cat "$root/build/sanitize.log" >&2; exit 1; }
-    unit=$(cd "$root/tests" && sed -nE 's/^granrad_test\(unit\/([a-z0-9_]+).*/test_unit_\1/p' ./*.cmake)
-    # shellcheck disable=SC2086
-    cmake --build "$root/build/Sanitize" --target $unit
-    (cd "$root" && OMP_WAIT_POLICY=passive ctest --preset Sanitize -j "$(nproc)")
+    mapfile -t unit < <(cd "$root/tests" && sed -nE "s/^granrad_test\\(unit\\/([a-z0-9_]+) granrad_$libraries[ )].*/test_unit_\\1/p" ./*.cmake)
+    cmake --build "$root/build/Sanitize" --target "${unit[@]}"
+    export LSAN_OPTIONS="suppressions=$root/tests/leaks_of_libraries.txt:print_suppressions=0"
+    printf '%s\n' "${unit[@]}" | OMP_WAIT_POLICY=passive xargs -P "$(nproc)" -I{} "$root/build/Sanitize/tests/{}" --gtest_brief=1
     ;;
   tidy)
     packages+=(clang-tidy-14)

@@ -79,6 +79,8 @@ UpdateSeconds seconds_of_an_update(const Case& c, const Bed& bed, int threads) {
   const bool shared = paths || radiation.kind == RadiationKind::embree ||
                       (radiation.kind == RadiationKind::lines && radiation.order == 0);
   const double few = many / 3;  // not fewer: rows must close
+  const double fewest = paths ? 32 : 5;
+  if (few < fewest) return {with_many * radiation.rays / many, shared ? 0 : with_many};
   const double with_few = std::min(with_many, update_cost(with_rays(c, few), bed, threads).wall_s);
   const double per_ray = (with_many - with_few) / (many - few);
   const double all = with_many + per_ray * (radiation.rays - many);

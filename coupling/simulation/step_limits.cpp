@@ -14,14 +14,14 @@ namespace {
 constexpr double normal_deviates = 4;        // of the transverse velocity, both partners
 constexpr double smallest_speed_m_s = 1e-3;  // a bed at rest still settles
 
-double falling_height_m(const Scene& scene) {
-  double top = scene.box.max.z, bottom = scene.box.min.z;
+/// Of a fall through all of the box and the walls, whichever way gravity points, (m/s)^2: 2 sum |g_k| L_k.
+double falling_speed_squared(const Scene& scene) {
+  Box all = scene.box;
   for (const Wall& wall : scene.walls)
-    for (const Vec3& vertex : wall.vertices) {
-      top = std::max(top, vertex.z);
-      bottom = std::min(bottom, vertex.z);
-    }
-  return top - bottom;
+    for (const Vec3& vertex : wall.vertices) all.include(vertex);
+  double sum = 0;
+  for (int axis = 0; axis < 3; ++axis) sum += std::abs(scene.gravity_m_s2[axis]) * all.size()[axis];
+  return 2 * sum;
 }
 
 double spread_of_speed_m_s(const Bed& bed) {
@@ -35,7 +35,7 @@ double spread_of_speed_m_s(const Bed& bed) {
 }
 
 double impact_speed_m_s(const Scene& scene, const Bed& bed) {
-  const double fall = std::sqrt(2 * norm(scene.gravity_m_s2) * falling_height_m(scene));
+  const double fall = std::sqrt(falling_speed_squared(scene));
   const double jostle = std::sqrt(2.0) * normal_deviates * scene.feed.transverse_velocity_std_m_s;
   return std::max(smallest_speed_m_s, std::max(2 * spread_of_speed_m_s(bed), jostle) + fall);
 }

@@ -158,6 +158,7 @@ y_label = "b"
 groups = ["g"]
 history = ["first"]
 particles = ["first"]
+profiles = ["first"]
 by = "a.g"
 log_x = true
 log_y = true
