@@ -113,7 +113,7 @@ case ${1:-} in
     mapfile -t unit < <(cd "$root/tests" && sed -nE "s/^granrad_test\\(unit\\/([a-z0-9_]+) granrad_$libraries[ )].*/test_unit_\\1/p" ./*.cmake)
     cmake --build "$root/build/Sanitize" --target "${unit[@]}"
     export LSAN_OPTIONS="suppressions=$root/tests/leaks_of_libraries.txt:print_suppressions=0"
-    printf '%s\n' "${unit[@]}" | OMP_WAIT_POLICY=passive xargs -P "$(nproc)" -I{} "$root/build/Sanitize/tests/{}" --gtest_brief=1
+    printf '%s\n' "${unit[@]}" | xargs -P "$(nproc)" -I{} env OMP_WAIT_POLICY=passive "$root/build/Sanitize/tests/{}" --gtest_brief=1
     ;;
   tidy)
     packages+=(clang-tidy-14)

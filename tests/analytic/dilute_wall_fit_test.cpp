@@ -2,7 +2,7 @@
 // a dilute bed needs no rays: exact factors of the six walls of the paper's channel, places spread evenly, shaded by Beer's
 // law, fitted as the paper fitted. Three printed coefficients come out to about their last digit, the fourth, 1.9 / d*, as
 // 1.7: with 1.9 the printed curve misses the samples by 0.075 rms, with 1.7 by 0.046 (the paper states 0.042 at most).
-// Planted error: h in place of h + r (the coefficients are others altogether).
+// Planted, seen to fail: h in place of h + r.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
 """What the programs export is read by numpy and scipy as the HDF5 files hold it. Usage: exports.py BIN SOURCE
-Meant to catch (planted once each): rows and columns exchanged in mtx; indices of 1 in npz; the height of a wall taken
+Planted, seen to fail: rows and columns exchanged in mtx; indices of 1 in npz; the height of a wall taken
 from its back; positions of a frame left outside the period.
 """
 import csv

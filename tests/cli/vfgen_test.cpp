@@ -69,7 +69,7 @@ TEST_F(Vfgen, ExplainsItself) {
   expect_says(vfgen("--help"), 0, "trace");
   expect_says(vfgen("trace --help"), 0, "--box");
   expect_says(vfgen("fit --help"), 0, "--form");
-  expect_says(vfgen("--version"), 0, "vfgen 0.1.0");
+  expect_says(vfgen("--version"), 0, "vfgen 0.2.0");
 }
 
 std::string dump_snapshot(int step, double z) {
