@@ -277,7 +277,7 @@ EOF
     for kind in "${kinds[@]}"; do
       mkdir -p "$fuzz/found/$kind"
       echo "$kind"
-    done | xargs -P "$(nproc)" -I{} "$fuzz/tests/fuzz_{}" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 \
+    done | xargs -P "$(nproc)" -I{} env "$fuzz/tests/fuzz_{}" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 \
       -max_len=65536 -close_fd_mask=3 -print_final_stats=1 -artifact_prefix="$fuzz/found/{}-" "$fuzz/found/{}" \
       "$root/tests/fuzz/corpus/{}"
     say "no findings"
