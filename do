@@ -240,7 +240,7 @@ EOF
       if [[ $name == scale ]]; then
         build granrun
         say "bench scale"
-        python3 "$root/tests/bench/scale.py" "${options[@]}" "$build/bin/granrun" "$build/bench"
+        /usr/bin/python3 "$root/tests/bench/scale.py" "${options[@]}" "$build/bin/granrun" "$build/bench"
         continue
       fi
       if [[ $name == load ]]; then
@@ -254,7 +254,7 @@ EOF
       if [[ $name == forecast ]]; then
         build granrun
         say "bench forecast"
-        python3 "$root/tests/bench/forecast.py" "$build/bin/granrun" "$root/data/scenes" "$build/bench" "${options[@]}"
+        /usr/bin/python3 "$root/tests/bench/forecast.py" "$build/bin/granrun" "$root/data/scenes" "$build/bench" "${options[@]}"
         continue
       fi
       build "${name}_bench"
@@ -285,7 +285,7 @@ EOF
   hard-cases)
     set_up
     build granrun
-    python3 "$root/tests/bench/hard_cases.py" "$build/bin/granrun" \
+    /usr/bin/python3 "$root/tests/bench/hard_cases.py" "$build/bin/granrun" \
       "$root/data/correlations/granrad_hard_spheres.toml" "$root/docs/hard-cases.md" "${@:2}"
     ;;
   -h | --help | help) usage ;;
