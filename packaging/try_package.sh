@@ -6,7 +6,7 @@ deb=$(realpath "$1")
 root=$(mktemp -d /tmp/granrad_root_XXXXXX)
 trap 'umount "$root/proc" 2>/dev/null || true; rm -rf "$root"' EXIT
 mirror=$(grep -rhoE 'https?://[^ ]+' /etc/apt/sources.list /etc/apt/sources.list.d/ 2>/dev/null | head -1)
-debootstrap --variant=minbase bookworm "$root" "${mirror:-http://deb.debian.org/debian}" >"$root.log" 2>&1 ||
+debootstrap --variant=minbase bookworm "$root" ${mirror:+"$mirror"} >"$root.log" 2>&1 ||
   { tail -5 "$root.log"; exit 1; }
 rm -f "$root.log"
 cp -r /etc/apt/. "$root/etc/apt/"

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <ctime>
 #include <nlohmann/json.hpp>
 
 #include "coupling/simulation/case_lock.h"
@@ -45,18 +44,9 @@ nlohmann::json parsed(const std::filesystem::path& file) {
   return json.is_object() ? json : nlohmann::json::object();
 }
 
-std::string now_text() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  char text[32] = "";
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text;
-}
-
 /// Who computes this, where and how long, added to what runs before this one took.
 nlohmann::ordered_json process(const RunOptions& options, const nlohmann::json& before) {
-  static const std::string started = now_text();
+  static const std::string started = date_of_now();
   const auto earlier = before.value("process", nlohmann::json::object());
   const bool same = earlier.is_object() && earlier.contains("pid") && earlier["pid"] == getpid();
   const auto seconds = [&](const char* key) {
@@ -73,7 +63,7 @@ nlohmann::ordered_json process(const RunOptions& options, const nlohmann::json& 
   json["command_line"] = options.command_line;
   json["first_started"] = earlier.is_object() ? earlier.value("first_started", started) : started;
   json["started"] = started;
-  json["written"] = now_text();
+  json["written"] = date_of_now();
   json["wall_seconds_before"] = before_s;
   json["wall_seconds"] = before_s + wall_seconds();
   return json;

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <exception>
 
 #include "dem/base/error.h"
@@ -132,6 +133,15 @@ void Progress::print(double done, const std::string& detail, bool last) {
   else
     fmt::print(stderr, "{}\n", line);
   std::fflush(stderr);
+}
+
+std::string date_of_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32] = "";
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
 }
 
 }  // namespace granrad

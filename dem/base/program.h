@@ -28,6 +28,8 @@ bool take_checkpoint_request();
 
 /// "12.3 s of computing on all threads, 4.5 s by the clock, 120 MB at most": of this process so far.
 std::string resources_used();
+/// UTC, as 2026-01-31T23:59:59Z.
+std::string date_of_now();
 double wall_seconds();  ///< by the clock, since this process started
 
 /// Progress with ETA on stderr: a line that rewrites itself on a terminal, else a line every 30 s or so.

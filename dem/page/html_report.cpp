@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <ctime>
 #include <fstream>
 #include <iterator>
 
@@ -76,15 +75,6 @@ std::string own_command() {
     word.clear();
   }
   return line;
-}
-
-std::string date_of_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  char text[32] = "";
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text;
 }
 
 /// A histogram as steps: the density of each bin from its lower border, 0 from the last border on.

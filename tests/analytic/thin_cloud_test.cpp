@@ -90,8 +90,8 @@ TEST(ThinCloud, TheExactFluxIsThatOfTheTables) {
   for (int k = 0; k < 5; ++k) EXPECT_NEAR(exact_flux(depth[k], 120), flux[k], 2e-5) << depth[k];
 }
 
-// Checks emission, tracing, periods, closure and the solution together. To plant: flux over the area of one plate and a
-// half; exchange areas closed by rows.
+// Checks emission, tracing, periods, closure and the solution together, to 0.2 % and two errors of the mean over
+// the beds; no error was planted here yet.
 TEST(ThinCloud, TracedCloudsTendToItLong) {
   for (const double depth : {0.5, 1.0}) {
     double extrapolated = 0, squares = 0;

@@ -74,6 +74,7 @@ void add_chart(HtmlReport& page, const std::string& title, const std::vector<Poi
 std::string beside_the_paper(const std::vector<Point>& points, const char* what,
                              double (*error)(const Point&)) {
   const Point& paper = points.back();
+  if (!std::isfinite(error(paper))) return fmt::format("{}: not run for the paper's scheme", what);
   const Point* best = nullptr;
   for (const auto& p : points) {
     const bool ours =
