@@ -42,7 +42,7 @@ usage() {
   tidy        clang-tidy on all sources, or on those named
   format      lays the sources out
   docs        references made from the programs, and the pages as a site in build/site
-  package     a .deb of programs, library, Python, data and documents in build/Package
+  package     in build/Package a .deb of programs, library, Python, data and documents; two of the plug-ins with MPI and LIGGGHTS
   package-test
               installs that package on a bare Debian (debootstrap) and tries what README promises
   fuzz-files [SECONDS]
@@ -125,9 +125,11 @@ case ${1:-} in
     printf '%s\n' "${files[@]}" | xargs -P "$(nproc)" -n 4 clang-tidy-14 -p "$build" --quiet
     ;;
   package)
-    packages+=("${python[@]}" "${documents[@]}" "${packaging[@]}")
-    set_up
+    packages+=("${liggghts_engine[@]}" "${python[@]}" "${documents[@]}" "${packaging[@]}")
+    mkdir -p "$root/build"
+    install_missing "${packages[@]}"
     say "package"
+    rm -f "$root"/build/Package/granrad*.deb
     cmake -S "$root" --preset Package >"$root/build/package.log" 2>&1 || { cat "$root/build/package.log" >&2; exit 1; }
     cmake --build "$root/build/Package"
     (cd "$root/build/Package" && cpack -G DEB)
@@ -138,7 +140,7 @@ case ${1:-} in
     install_missing "${packages[@]}"
     [[ -n $(ls "$root"/build/Package/granrad*.deb 2>/dev/null) ]] || "$root/do" package
     say "the package alone on a bare Debian"
-    "$root/packaging/try_package.sh" "$(ls -t "$root"/build/Package/granrad_*.deb | head -1)"
+    "$root/packaging/try_package.sh" "$root"/build/Package
     ;;
   docs)
     packages+=("${documents[@]}")

@@ -18,3 +18,12 @@ set_tests_properties(cli.Options PROPERTIES LABELS cli TIMEOUT 600)
 add_test(NAME cli.Exports COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/cli/exports.py ${PROJECT_BINARY_DIR}/bin
   ${PROJECT_SOURCE_DIR})
 set_tests_properties(cli.Exports PROPERTIES LABELS cli TIMEOUT 300)
+# answers to mistyped words
+add_test(NAME cli.Manners COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/cli/manners.py ${PROJECT_BINARY_DIR}/bin)
+set_tests_properties(cli.Manners PROPERTIES LABELS cli TIMEOUT 300 ENVIRONMENT GRANRAD_DATA=${PROJECT_SOURCE_DIR}/data)
+# a project of others that has this one as a folder
+add_test(NAME cli.OuterProjectLong COMMAND ${CMAKE_COMMAND} -E env ${CMAKE_CTEST_COMMAND}
+  --build-and-test ${CMAKE_CURRENT_SOURCE_DIR}/docs/outer_project ${PROJECT_BINARY_DIR}/outer_project
+  --build-generator ${CMAKE_GENERATOR} --build-target two_spheres --build-options -DGRANRAD_SOURCE=${PROJECT_SOURCE_DIR}
+  -DCMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER} --test-command ${PROJECT_BINARY_DIR}/outer_project/two_spheres)
+set_tests_properties(cli.OuterProjectLong PROPERTIES LABELS long TIMEOUT 3000)

@@ -9,6 +9,7 @@
 #include "coupling/granrun/run_record.h"
 #include "coupling/results/profiles.h"
 #include "coupling/results/results.h"
+#include "coupling/results/written_units.h"
 #include "coupling/simulation/case_folder.h"
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
@@ -146,7 +147,7 @@ void add_walls(HtmlReport& page, const Results& results) {
              rows);
 }
 
-void add_head(HtmlReport& page, const Results& r, const RunRecord& record) {
+void add_head(HtmlReport& page, const Case& c, const Results& r, const RunRecord& record) {
   page.verdict(
       fmt::format(
           "{} Means from {:g} s to {:g} s, {}. Energy stored and received differ by {:.1e} of the heat at most.",
@@ -155,18 +156,20 @@ void add_head(HtmlReport& page, const Results& r, const RunRecord& record) {
       record.finished && r.largest_energy_defect < 1e-6);
   std::vector<Tile> tiles;
   const auto add = [&](const char* column, const std::string& label, const std::string& unit,
-                       double factor = 1) {
+                       const PrintUnit& shown = {}) {
     const auto found = r.column.find(column);
     if (found != r.column.end() && std::isfinite(found->second.mean) && found->second.mean != 0)
-      tiles.push_back(tile(label, unit, factor * found->second.mean, factor * found->second.standard_error));
+      tiles.push_back(tile(label, unit.empty() ? shown.name : unit, shown.of(found->second.mean),
+                           shown.difference(found->second.standard_error)));
   };
+  const PrintUnit K = written_unit(c, "K"), kg_s = written_unit(c, "kg/s");
   add("h_wp_W_m2K", "wall-to-particle coefficient", "W/m²K");
   add("h_rad_W_m2K", "of it by radiation", "W/m²K");
   add("h_sfs_W_m2K", "of it through the gas", "W/m²K");
   add("h_ss_W_m2K", "of it through contacts", "W/m²K");
-  add("outlet_temperature_K", "temperature leaving", "K");
-  add("mean_temperature_K", "mean temperature", "K");
-  add("mass_flow_out_kg_s", "mass flow out", "g/s", 1000);
+  add("outlet_temperature_K", "temperature leaving", "", K);
+  add("mean_temperature_K", "mean temperature", "", K);
+  add("mass_flow_out_kg_s", "mass flow out", "", kg_s);
   add("solid_fraction", "solid fraction", "");
   add("Nu_d", "Nusselt number", "");
   page.tiles(tiles);
@@ -197,9 +200,9 @@ int report_case(const std::filesystem::path& where, const RunOptions& options) {
   const RunRecord record = read_run_record(folder);
   HtmlReport page(record.scene_name);
   const bool has_rows = !history.at("time_s").empty();
-  const Results results =
-      has_rows ? summarise(folder, read_case(folder.root() / "scene.toml", {})) : Results{};
-  if (has_rows) add_head(page, results, record);
+  const Case c = has_rows ? read_case(folder.root() / "scene.toml", {}) : Case{};
+  const Results results = has_rows ? summarise(folder, c) : Results{};
+  if (has_rows) add_head(page, c, results, record);
   page.paragraph(fmt::format("Radiation: {}.", record.radiation));
   add_bed(page, folder);
   if (has_rows) add_histories(page, history, results);

@@ -80,9 +80,10 @@ void judge_flow(const Case& c, Verdict& verdict) {
 
 /// A collision may begin and end between two heat steps.
 const char* how_contacts_are_seen(EngineKind engine) {
-  if (engine == EngineKind::native) return ", integrated over every DEM step";
-  return engine == EngineKind::liggghts ? ", as they stand at each heat step (short collisions are sampled)"
-                                        : "";
+  if (engine == EngineKind::native) return ",\n    integrated over every DEM step";
+  return engine == EngineKind::liggghts
+             ? ",\n    as they stand at each heat step (short collisions are sampled)"
+             : "";
 }
 
 void judge_conduction(const Case& c, Verdict& verdict) {
@@ -133,20 +134,22 @@ void print_limits(const Simulation& simulation) {
   const auto& limits = simulation.limits();
   const auto& plan = simulation.plan();
   fmt::print("\nstep limits\n");
-  if (std::isfinite(limits.dem_s))
-    fmt::print(
-        "  Rayleigh time               {}   step allowed: 0.3 of it\n"
-        "  Hertz time at {:.3g} m/s    {}   step allowed: 0.1 of it\n"
-        "  DEM step                    {}   largest allowed {}\n",
-        seconds(limits.rayleigh_time_s), limits.impact_speed_m_s, seconds(limits.hertz_time_s),
-        seconds(plan.step_s), seconds(limits.dem_s));
-  fmt::print("  heat step                   {}   conduction allows {} for the bed at time 0\n",
-             seconds(plan.tick_s), seconds(simulation.conduction_limit_s()));
-  if (plan.ticks_per_radiation > 0)
-    fmt::print(
-        "  radiation update            {}   second order up to {}, beyond implicit; following the motion asks {}\n",
-        seconds(plan.tick_s * static_cast<double>(plan.ticks_per_radiation)), seconds(limits.radiation_s),
-        seconds(limits.motion_s));
+  const auto row = [](const std::string& what, double value_s, const std::string& remark) {
+    fmt::print("  {:<27} {:<12} {}\n", what, seconds(value_s), remark);
+  };
+  if (std::isfinite(limits.dem_s)) {
+    row("Rayleigh time", limits.rayleigh_time_s, "step allowed: 0.3 of it");
+    row(fmt::format("Hertz time at {:.3g} m/s", limits.impact_speed_m_s), limits.hertz_time_s,
+        "step allowed: 0.1 of it");
+    row("DEM step", plan.step_s, "largest allowed " + seconds(limits.dem_s));
+  }
+  row("heat step", plan.tick_s,
+      fmt::format("conduction allows {} at time 0", seconds(simulation.conduction_limit_s())));
+  if (plan.ticks_per_radiation > 0) {
+    row("radiation update", plan.tick_s * static_cast<double>(plan.ticks_per_radiation),
+        fmt::format("second order up to {}, beyond implicit", seconds(limits.radiation_s)));
+    if (std::isfinite(limits.motion_s)) row("", limits.motion_s, "would follow the motion");
+  }
   if (std::isfinite(limits.dem_s)) fmt::print("  {} DEM steps per heat step\n", plan.steps_per_tick);
   fmt::print("  {} heat steps in {}{}\n", plan.end_tick, seconds(plan.time_s(plan.end_tick)),
              plan.cuts(plan.end_tick) ? ", the last one cut short" : "");
@@ -183,7 +186,7 @@ void print_forecast(const Case& c, Simulation& simulation, const RunOptions& opt
   std::string list;
   for (const auto& one : sources)
     list += fmt::format("{}{} {}", list.empty() ? "" : ", ", one.source, duration(one.seconds));
-  fmt::print("  computing for {:g} % standard error of the wall heat at one update, cheapest first: {}\n",
+  fmt::print("  computing for {:g} % standard error of the wall heat at one update:\n    {}\n",
              100 * sources.front().error, list);
 }
 

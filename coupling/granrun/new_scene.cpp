@@ -45,9 +45,9 @@ fs::path example_file(const std::string& asked) {
   auto names = examples(data / "scenes");
   for (const auto& [brief, full] : short_names) names.push_back(brief);
   const std::string meant = closest_word(asked, names);
-  throw InputError(fmt::format("--from = {} (no such example){}; try one of: {}", asked,
-                               meant.empty() ? "" : fmt::format(". Did you mean {}?", meant),
-                               fmt::join(names, ", ")));
+  throw InputError(fmt::format("--from = {} (no such example); {}", asked,
+                               meant.empty() ? fmt::format("try one of {}", fmt::join(names, ", "))
+                                             : fmt::format("did you mean {}?", meant)));
 }
 
 std::string text_of(const fs::path& file) {

@@ -34,7 +34,7 @@ bool resume_from_last_frame(Simulation& simulation, const CaseFolder& folder, co
       say(options, fmt::format("resumed from {} at {:g} s", frame->file.string(), simulation.bed().time_s));
       return true;
     } catch (const Error& error) {
-      fmt::print(stderr, "{}\n  skipped: trying the frame before\n", error.what());
+      print_message(fmt::format("{}\n  skipped: trying the frame before", error.what()));
     }
   }
   if (frames.empty() && read_history(folder.history()).at("time_s").empty()) return false;

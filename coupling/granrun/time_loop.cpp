@@ -114,7 +114,7 @@ void remark_on_implicit_radiation(const Simulation& simulation, const RunOptions
 }  // namespace
 
 void say(const RunOptions& options, const std::string& text) {
-  if (!options.quiet()) fmt::print(stderr, "{}\n", text);
+  if (!options.quiet()) print_message(text);
 }
 
 int follow(Simulation& simulation, const Case& c, const CaseFolder& folder, const RunOptions& options,
@@ -125,7 +125,7 @@ int follow(Simulation& simulation, const Case& c, const CaseFolder& folder, cons
   on_first_rank([&] {
     history.emplace(folder.history(), simulation.last_row_s());
     walls.emplace(folder.wall_history(), simulation.last_row_s());
-    if (!history->note().empty()) fmt::print(stderr, "note: {}\n", history->note());
+    if (!history->note().empty()) print_message("note: " + history->note());
   });
   if (simulation.bed().step == 0) save(simulation, folder);
   const auto& plan = simulation.plan();

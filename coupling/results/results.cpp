@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "coupling/results/written_units.h"
 #include "coupling/simulation/radiation_source.h"
 #include "dem/base/stated_number.h"
 
@@ -84,25 +85,28 @@ std::vector<WallResult> wall_results(const std::vector<WallRow>& rows, double fr
   return results;
 }
 
-void print_line(const char* what, const StatedNumber& number, const char* unit) {
-  fmt::print("  {:<34}{:>12} +- {:<9} {}\n", what, number.value, number.error, unit);
-}
-
-void line(const char* what, const Average& average, const char* unit) {
+void line(const std::string& what, const Average& average, const PrintUnit& unit) {
   if (!std::isfinite(average.mean) || average.mean == 0) return;
-  if (average.standard_error > 1e-12 * std::abs(average.mean))  // below: rounding of a constant
-    print_line(what, stated(average.mean, average.standard_error), unit);
-  else
-    fmt::print("  {:<34}{:>12.5g}              {}\n", what, average.mean, unit);
+  const double mean = unit.of(average.mean), error = unit.difference(average.standard_error);
+  if (average.standard_error > 1e-12 * std::abs(average.mean)) {  // below: rounding of a constant
+    const StatedNumber number = stated(mean, error);
+    fmt::print("  {:<34}{:>12} +- {:<9} {}\n", what, number.value, number.error, unit.name);
+  } else {
+    fmt::print("  {:<34}{:>12.5g}              {}\n", what, mean, unit.name);
+  }
 }
 
-void print_walls(const Results& results) {
+void line(const std::string& what, const Average& average, const char* unit) {
+  line(what, average, PrintUnit{unit});
+}
+
+void print_walls(const Results& results, const PrintUnit& K) {
   for (const WallResult& wall : results.walls) {
     if (!(std::abs(wall.Q_W.mean) > 0)) continue;
     const bool one_temperature = std::isfinite(wall.temperature_K);
-    line((one_temperature ? fmt::format("heat from {} ({:g} K)", wall.wall, wall.temperature_K)
-                          : "heat from " + wall.wall)
-             .c_str(),
+    line(one_temperature
+             ? fmt::format("heat from {} ({:.6g} {})", wall.wall, K.of(wall.temperature_K), K.name)
+             : "heat from " + wall.wall,
          wall.Q_W, "W");
     line("  per area in the region", wall.flux_W_m2, "W/m2");
   }
@@ -113,7 +117,8 @@ void print_seconds(const PartSeconds& s) {
   if (total <= 0) return;
   const auto part = [&](double seconds) { return 100 * seconds / total; };
   fmt::print(
-      "  computing: flow {:.1f} s ({:.0f} %), conduction {:.1f} s ({:.0f} %), radiation {:.1f} s ({:.0f} %)\n",
+      "  computing: flow {:.1f} s ({:.0f} %), conduction {:.1f} s ({:.0f} %),\n"
+      "    radiation {:.1f} s ({:.0f} %)\n",
       s.flow, part(s.flow), s.conduction, part(s.conduction), s.radiation, part(s.radiation));
 }
 
@@ -160,32 +165,33 @@ Results summarise(const CaseFolder& folder, const Case& c) {
 void print_results(const Case& c, const Results& results, const Simulation& simulation,
                    const CaseFolder& folder) {
   const auto& of = results.column;
-  fmt::print("{}: means from {:g} s to {:g} s{} (radiation: {})\n", c.flow.name, results.from_s, results.to_s,
-             results.steady ? ", steady" : "", describe(c.heat.radiation));
+  fmt::print("{}: means from {:g} s to {:g} s{}\n  radiation: {}\n", c.flow.name, results.from_s,
+             results.to_s, results.steady ? ", steady" : "", describe(c.heat.radiation));
   if (!results.note.empty()) fmt::print("  {}\n", results.note);
   line("wall to particles, h_wp", of.at("h_wp_W_m2K"), "W/m2K");
   line("  solid contacts", of.at("h_ss_W_m2K"), "W/m2K");
   line("  gas lenses", of.at("h_sfs_W_m2K"), "W/m2K");
   line("  radiation", of.at("h_rad_W_m2K"), "W/m2K");
   line("Nusselt number Nu_d", of.at("Nu_d"), "");
-  print_walls(results);
-  line("mean temperature in the region", of.at("mean_temperature_K"), "K");
-  line("temperature of leaving particles", of.at("outlet_temperature_K"), "K");
+  const PrintUnit K = written_unit(c, "K"), kg_s = written_unit(c, "kg/s");
+  print_walls(results, K);
+  line("mean temperature in the region", of.at("mean_temperature_K"), K);
+  line("temperature of leaving particles", of.at("outlet_temperature_K"), K);
   line("solid fraction in the region", of.at("solid_fraction"), "");
   if (simulation.fed().inserted + simulation.fed().removed > 0) {
-    line("mass flow in", of.at("mass_flow_in_kg_s"), "kg/s");
-    line("mass flow out", of.at("mass_flow_out_kg_s"), "kg/s");
-    line("mean velocity", of.at("mean_velocity_m_s"), "m/s");
-    line("residence time", of.at("residence_time_s"), "s");
+    line("mass flow in", of.at("mass_flow_in_kg_s"), kg_s);
+    line("mass flow out", of.at("mass_flow_out_kg_s"), kg_s);
+    line("mean velocity", of.at("mean_velocity_m_s"), written_unit(c, "m/s"));
+    line("residence time", of.at("residence_time_s"), written_unit(c, "s"));
     line("Peclet number Pe_L", of.at("Pe_L"), "");
   }
   line("contacts per particle", of.at("coordination_number"), "");
   const double final_K = results.final_mean_temperature_K;
   fmt::print("  at the end: {} particles, {} in the region\n", simulation.bed().size(),
-             std::isfinite(final_K) ? fmt::format("{:.2f} K", final_K) : "none");
+             std::isfinite(final_K) ? fmt::format("{:.2f} {}", K.of(final_K), K.name) : "none");
   fmt::print("  energy: |stored - received| / received = {:.1e} at most\n", results.largest_energy_defect);
   print_seconds(simulation.seconds());
-  fmt::print("  history {}   walls {}   frames {}\n", folder.history().string(),
+  fmt::print("  history  {}\n  walls    {}\n  frames   {}\n", folder.history().string(),
              folder.wall_history().string(), (folder.root() / "run.hdf.series").string());
 }
 

@@ -105,7 +105,7 @@ NamedBed bed_from(const Case& c, const fs::path& snapshot) {
 
 std::vector<NamedBed> choose_beds(const Case& c) {
   std::vector<NamedBed> beds;
-  for (const auto& note : c.flow.notes) fmt::print(stderr, "note: {}\n", note);
+  for (const auto& note : c.flow.notes) print_message("note: " + note);
   for (const auto& file : c.heat.validate.snapshots) beds.push_back(bed_from(c, file));
   if (beds.empty()) beds.push_back({c.flow.name, Flow(c.flow).first_bed(), c});
   for (const auto& named : beds)

@@ -1,9 +1,11 @@
 #include "dem/base/command_line.h"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -69,31 +71,79 @@ bool knows(const std::vector<std::string>& names, const std::string& word) {
   return std::find(names.begin(), names.end(), word) != names.end();
 }
 
-/// "--ray is no option of vfgen trace; did you mean --rays?" for the first word that is nothing known; "" without any.
-std::string hint(const CLI::App& app, int argc, char** argv) {
-  const CLI::App* command = &app;
-  std::string path = app.get_name();
+/// Names of the subcommands of a command.
+std::vector<std::string> subcommands_of(const CLI::App* command) {
+  std::vector<std::string> names;
+  for (const CLI::App* sub : command->get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(sub->get_name());
+  return names;
+}
+
+std::string guess(const std::string& word, const std::vector<std::string>& known) {
+  const std::string meant = closest_word(word, known);
+  return meant.empty() ? "" : fmt::format("; did you mean {}?", meant);
+}
+
+/// The innermost command that was named, and the first word after it that it does not know.
+struct Asked {
+  const CLI::App* command;
+  std::string path;
+  std::string unknown;                  ///< empty: every word is known
+  std::vector<std::string> candidates;  ///< what could stand there
+};
+
+Asked read_words(const CLI::App& app, int argc, char** argv) {
+  Asked asked{&app, app.get_name(), "", {}};
   for (int k = 1; k < argc; ++k) {
     const std::string word = std::string(argv[k]).substr(0, std::string(argv[k]).find('='));
     std::vector<std::string> known;
     if (word.starts_with("--")) {
-      known = options_of(command);
+      known = options_of(asked.command);
     } else if (!word.starts_with('-')) {
-      for (const CLI::App* sub : command->get_subcommands([](const CLI::App*) { return true; }))
-        known.push_back(sub->get_name());
+      known = subcommands_of(asked.command);
       if (known.empty()) continue;  // a positional argument
       if (knows(known, word)) {
-        command = command->get_subcommand(word);
-        path += " " + word;
+        asked.command = asked.command->get_subcommand(word);
+        asked.path += " " + word;
         continue;
       }
     }
     if (known.empty() || knows(known, word)) continue;
-    const std::string meant = closest_word(word, known);
-    return fmt::format("{} is no {} of {}{}", word, word.starts_with("--") ? "option" : "subcommand", path,
-                       meant.empty() ? "" : fmt::format("; did you mean {}?", meant));
+    asked.unknown = word;
+    asked.candidates = known;
+    return asked;
   }
-  return "";
+  return asked;
+}
+
+/// "--to = vtk (must be vtp, dump, csv or npz)" of the parser's "--to: vtk not in {vtp,dump,csv,npz}", with a guess.
+std::string choice_text(const std::string& said) {
+  static const std::regex choice(R"(^(\S+): (.*) not in \{(.*)\}$)");
+  std::smatch found;
+  if (!std::regex_match(said, found, choice)) return said;
+  std::vector<std::string> names;
+  std::istringstream list(found[3].str());
+  for (std::string name; std::getline(list, name, ',');) names.push_back(name);
+  const std::string last = names.back();
+  names.pop_back();
+  const std::string all = names.empty() ? last : fmt::format("{} or {}", fmt::join(names, ", "), last);
+  names.push_back(last);
+  return fmt::format("{} = {} (must be {}){}", found[1].str(), found[2].str(), all, guess(found[2], names));
+}
+
+/// What is wrong with the words of a command, and what could be meant.
+std::string cause(const Asked& asked, const CLI::ParseError& error) {
+  if (!asked.unknown.empty()) {
+    const bool option = asked.unknown.starts_with("--");
+    const std::string meant = guess(asked.unknown, asked.candidates);
+    const std::string list =
+        !option && meant.empty() ? fmt::format("; it has {}", fmt::join(asked.candidates, ", ")) : "";
+    return fmt::format("{} is no {} of {}{}{}", asked.unknown, option ? "option" : "subcommand", asked.path,
+                       meant, list);
+  }
+  if (const auto names = subcommands_of(asked.command); !names.empty())
+    return fmt::format("{} needs a subcommand: {}", asked.path, fmt::join(names, ", "));
+  return choice_text(error.what());
 }
 
 }  // namespace
@@ -104,8 +154,9 @@ void set_manners(CLI::App& app) {
 }
 
 int usage_exit(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
-  if (app.exit(error) == 0) return exit_ok;
-  if (const std::string text = hint(app, argc, argv); !text.empty()) fmt::print(stderr, "{}\n", text);
+  if (error.get_exit_code() == 0) return app.exit(error);  // help, version
+  const Asked asked = read_words(app, argc, argv);
+  fmt::print(stderr, "{}\nSee {} --help.\n", wrapped(cause(asked, error)), asked.path);
   return exit_bad_input;
 }
 

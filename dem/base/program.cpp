@@ -1,6 +1,7 @@
 #include "dem/base/program.h"
 
 #include <fmt/core.h>
+#include <sys/ioctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -10,6 +11,7 @@
 #include <cstdio>
 #include <ctime>
 #include <exception>
+#include <sstream>
 
 #include "dem/base/error.h"
 #include "dem/base/processors.h"
@@ -41,10 +43,32 @@ std::string duration_text(double seconds) {
   return fmt::format("{}:{:02} h", s / 3600, s / 60 % 60);
 }
 
+const double started_s = now_s();
+
+/// Lines of at most `width` columns, broken at spaces; what goes on is set in by four.
+std::string broken(const std::string& text, std::size_t width) {
+  std::string out;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    while (line.size() > width) {
+      const auto at = line.rfind(' ', width);
+      if (at == std::string::npos || line.find_first_not_of(' ') >= at) break;  // one long word
+      out += line.substr(0, at) + "\n";
+      line = "    " + line.substr(at + 1);
+    }
+    out += line + "\n";
+  }
+  return out;
+}
+
 }  // namespace
 
-namespace {
-const double started_s = now_s();
+void print_message(const std::string& text) {
+  winsize window{};
+  if (isatty(2) && ioctl(2, TIOCGWINSZ, &window) == 0)
+    fmt::print(stderr, "{}", broken(text, window.ws_col > 20 ? window.ws_col : 80));
+  else
+    fmt::print(stderr, "{}\n", text);
 }
 
 int run_program(const std::string& name, const std::function<int()>& body) {
@@ -53,7 +77,7 @@ int run_program(const std::string& name, const std::function<int()>& body) {
     const int code = body();
     return interrupt_signal() ? 128 + interrupt_signal() : code;
   } catch (const Error& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    print_message(error.what());
     return interrupt_signal() ? 128 + interrupt_signal() : error.exit_code();
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "{}: out of memory\n", name);

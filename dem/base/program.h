@@ -11,6 +11,9 @@ enum class Verbosity { quiet, normal, verbose };
 const char* program_version();
 const char* program_git_sha();
 
+/// A message or a note on stderr: on a terminal within its width, broken at spaces; elsewhere as it is, one a line.
+void print_message(const std::string& text);
+
 /// Runs a program's body and turns its errors into messages on stderr and the exit codes of error.h;
 /// an interrupt caught by `install_signal_handlers` ends as 128 + its number: 129 (SIGHUP), 130 (SIGINT), 143
 /// (SIGTERM).

@@ -77,7 +77,7 @@ int run_fit(const FitCommand& command, Verbosity verbosity) {
   if (!command.report.empty()) write_fit_report(command.report, fit.table, fit.rows);
   for (const auto& row : fit.rows)
     if (const auto warning = snapshot_warning(row.row.solid_fraction, row.origins.size()); !warning.empty())
-      fmt::print(stderr, "warning: {}\n", warning);
+      print_message("warning: " + warning);
   if (verbosity == Verbosity::quiet) return exit_ok;
   print_rows(fit.rows);
   if (verbosity == Verbosity::verbose) print_coefficients(fit.table);

@@ -98,12 +98,12 @@ std::vector<SnapshotEnclosure> read_all(const TraceCommand& command, const std::
 
 /// What a user should know of a snapshot before it is traced.
 void remark_on(const std::string& snapshot, const SnapshotEnclosure& read, Verbosity verbosity) {
-  if (!read.note.empty()) fmt::print(stderr, "note: {}\n", read.note);
+  if (!read.note.empty()) print_message("note: " + read.note);
   if (read.left_out > 0)
     fmt::print(stderr, "{}: {} particles with their centre outside the box were left out\n", snapshot,
                read.left_out);
-  if (!read.overlaps.empty()) fmt::print(stderr, "{}\n", read.overlaps);
-  if (!read.meshes.empty() && verbosity != Verbosity::quiet) fmt::print(stderr, "{}\n", read.meshes);
+  if (!read.overlaps.empty()) print_message(read.overlaps);
+  if (!read.meshes.empty() && verbosity != Verbosity::quiet) print_message(read.meshes);
 }
 
 void print_traced(const std::filesystem::path& file, const ViewFactorFile& traced, Verbosity verbosity) {

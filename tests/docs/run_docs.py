@@ -71,6 +71,19 @@ def check_promises(folder):
         faults.append(f"tutorial_exchanger.md: h = {results['h_wp_W_m2K']}")
 
 
+def check_versions():
+    """A package's name and the version asked of find_package are those of this source."""
+    version = re.search(r"project\(granrad VERSION (\d+\.\d+)(\.\d+)", (SOURCE / "CMakeLists.txt").read_text())
+    for page in [*PAGES, SOURCE / "packaging/example/CMakeLists.txt"]:
+        text = page.read_text()
+        for named in re.findall(r"find_package\(granrad (\S+) ", text):
+            if named != version[1]:
+                faults.append(f"{page.name}: version {named} in place of {version[1]}")
+        for named in re.findall(r"granrad(?:-\w+)?_(\d[\d.]*)_amd64", text):
+            if named != version[1] + version[2]:
+                faults.append(f"{page.name}: a package of version {named}")
+
+
 def check_references():
     for page, command in (("scene.md", ["granrun", "keys"]), ("study_keys.md", ["granrun", "keys", "study"]), ("tables.md", ["granrun", "keys", "table"]), ("generate.md", ["vfgen", "keys"])):
         made = subprocess.run([BIN / command[0], *command[1:]], capture_output=True, text=True, check=True).stdout
@@ -79,6 +92,7 @@ def check_references():
 
 
 check_links()
+check_versions()
 check_references()
 with tempfile.TemporaryDirectory() as name:
     folder = run_commands(pathlib.Path(name))

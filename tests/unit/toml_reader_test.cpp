@@ -49,7 +49,21 @@ TEST(TomlReader, ConvertsUnitsToSI) {
   EXPECT_DOUBLE_EQ(read_number("3", {.unit = "s"}), 3);
 }
 
+// As results are printed, and as engineers write: all that follows the stroke is below it. By themselves UDUNITS reads mK
+// as millikelvin; a key in W/K still may be written so.
+TEST(TomlReader, ReadsTheUnitsThatArePrinted) {
+  for (const char* unit : {"W/mK", "W/(mK)", "W/(m K)", "W/m/K"})
+    EXPECT_DOUBLE_EQ(read_number(std::string("\"0.026 ") + unit + "\"", {.unit = "W/(m K)"}), 0.026) << unit;
+  for (const char* unit : {"W/m2K", "W/m²K", "W/(m² K)", "W/m^2K"})
+    EXPECT_DOUBLE_EQ(read_number(std::string("\"108 ") + unit + "\"", {.unit = "W/(m2 K)"}), 108) << unit;
+  EXPECT_DOUBLE_EQ(read_number("\"755 J/kgK\"", {.unit = "J/(kg K)"}), 755);
+  EXPECT_DOUBLE_EQ(read_number("\"0.3 W/cmK\"", {.unit = "W/(m K)"}), 30);
+  EXPECT_DOUBLE_EQ(read_number("\"3 W/mK\"", {.unit = "W/K"}), 3000);
+}
+
 TEST(TomlReader, RefusesWrongNumbers) {
+  EXPECT_EQ(number_problem("\"27 C\"", {.unit = "K"}),
+            "f.toml:1:5: v = \"27 C\" ('C' is no temperature; degrees are written degC)");
   EXPECT_EQ(number_problem("\"1 kg\"", {.unit = "m"}),
             "f.toml:1:5: v = \"1 kg\" ('kg' cannot be converted to m)");
   EXPECT_EQ(number_problem("\"1 furlogn\"", {.unit = "m"}),
