@@ -14,6 +14,10 @@ set_tests_properties(cli.Docs PROPERTIES LABELS cli TIMEOUT 600)
 add_test(NAME cli.Options COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/cli/options.py ${PROJECT_BINARY_DIR}/bin
   ${PROJECT_SOURCE_DIR})
 set_tests_properties(cli.Options PROPERTIES LABELS cli TIMEOUT 600)
+# no key of a scene is dead
+add_test(NAME cli.SceneKeys COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/cli/scene_keys.py ${PROJECT_BINARY_DIR}/bin
+  ${PROJECT_SOURCE_DIR})
+set_tests_properties(cli.SceneKeys PROPERTIES LABELS cli TIMEOUT 600)
 # what other programs read
 add_test(NAME cli.Exports COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/cli/exports.py ${PROJECT_BINARY_DIR}/bin
   ${PROJECT_SOURCE_DIR})

@@ -102,8 +102,8 @@ double seconds_of_a_solve(const Case& c, const Bed& bed, int threads) {
 
 Forecast forecast(const Case& c, Simulation& simulation, int threads) {
   Forecast cost;
-  const TimePlan plan = simulation.plan();
-  const Bed bed = simulation.bed();
+  const TimePlan& plan = simulation.plan();
+  const Bed& bed = simulation.bed();
   const double ticks = static_cast<double>(plan.end_tick), count = mean_count(c, bed);
   const bool moves = c.flow.engine != EngineKind::none;
   cost.heat_steps = ticks, cost.mean_count = count;

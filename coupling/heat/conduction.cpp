@@ -100,14 +100,15 @@ void add_touches(const Bed& bed, const Touches& touches, const ContactTable& con
   for (auto& g : result.walls) g.solid_W_K = 0;
   const std::size_t near = result.particles.size();
   std::size_t k = 0;
-  for (const auto& [i, j, root_area_m] : touches.particles) {
+  for (const PairTouch& touch : touches.particles) {
+    const std::int32_t i = touch.i, j = touch.j;
     if (!inside(i) || !inside(j)) continue;
     const auto before = [&](const PairConductance& g) { return g.i != i ? g.i < i : g.j < j; };
     while (k < near && before(result.particles[k])) ++k;
     if (k < near && result.particles[k].i == i && result.particles[k].j == j)
-      result.particles[k].solid_W_K = solid(i, j, root_area_m);
+      result.particles[k].solid_W_K = solid(i, j, touch.root_area_m);
     else
-      result.particles.push_back({i, j, solid(i, j, root_area_m), 0});
+      result.particles.push_back({i, j, solid(i, j, touch.root_area_m), 0});
   }
   for (const auto& [i, wall, root_area_m] : touches.walls)
     if (inside(i) && conducts(bed.walls[wall]))

@@ -183,7 +183,8 @@ void read_effort(TomlTable& table, RadiationSettings& settings) {
     table.problem("error", "is used with source = paths and rays = \"auto\" only; leave one of them out");
 }
 
-RadiationSettings read_radiation(TomlTable table, const Scene& scene, const std::string& fallback_source) {
+/// A source of radiative exchange: [radiation], or one that is compared.
+RadiationSettings read_source(TomlTable table, const Scene& scene, const std::string& fallback_source) {
   RadiationSettings settings;
   const auto chosen = table.choice(
       {"source",
@@ -202,13 +203,6 @@ RadiationSettings read_radiation(TomlTable table, const Scene& scene, const std:
       {"order", "of the radiosity over each sphere, with lines: 0 uniform, 1 to 3 spherical harmonics"}, 0, 3,
       0));
   read_effort(table, settings);
-  settings.every_s =
-      table
-          .number_or_auto(
-              {"every_s",
-               "time between updates of the radiation; auto: by motion and the radiative time constant"},
-              {.unit = "s", .min = 0, .min_exclusive = true}, default_radiation_interval_s)
-          .value_or(0);
   settings.closure =
       table.choice(
           {"closure",
@@ -235,6 +229,15 @@ RadiationSettings read_radiation(TomlTable table, const Scene& scene, const std:
   return settings;
 }
 
+RadiationSettings read_radiation(TomlTable table, const Scene& scene) {
+  RadiationSettings settings = read_source(table, scene, table.present() ? "paths" : "none");
+  const Key every{"every_s",
+                  "time between updates of the radiation; auto: by motion and the radiative time constant"};
+  const NumberRule positive{.unit = "s", .min = 0, .min_exclusive = true};
+  settings.every_s = table.number_or_auto(every, positive, default_radiation_interval_s).value_or(0);
+  return settings;
+}
+
 OutputSettings read_output(TomlTable table, const Scene& scene) {
   const double fallback = scene.end_time_s > 0 ? scene.end_time_s / 100 : 1;
   OutputSettings output;
@@ -252,9 +255,9 @@ ValidateSettings read_validate(TomlTable table, const Scene& scene) {
   if (auto reference =
           table.table({"reference", "The source the others are compared with; keys as in [radiation]"});
       reference.present())
-    validate.reference = read_radiation(reference, scene, "paths");
+    validate.reference = read_source(reference, scene, "paths");
   for (auto& compared : table.tables({"compare", "A source to compare; keys as in [radiation]"})) {
-    const RadiationSettings settings = read_radiation(compared, scene, "correlation");
+    const RadiationSettings settings = read_source(compared, scene, "correlation");
     std::vector<double> ladder = {settings.rays};
     if (compared.has("ladder")) {
       if (compared.has("rays"))
@@ -329,7 +332,7 @@ HeatScene read_heat_scene(TomlDocument& document, const Scene& scene) {
   heat.conduction_every_steps =
       read_conduction_interval(root.table({"conduction", "Heat through contacts"}), scene);
   auto radiation = root.table({"radiation", "How radiation is exchanged; absent: no radiation"});
-  heat.radiation = read_radiation(radiation, scene, radiation.present() ? "paths" : "none");
+  heat.radiation = read_radiation(radiation, scene);
   heat.surroundings_K =
       root.table({"surroundings", "what rays meet beyond all walls"})
           .optional_number({"temperature_K", "of the black surroundings; needed where rays leave"},

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/base/files/csv.h"
 #include "dem/page/html_report.h"
 
 namespace granrad {
@@ -200,9 +201,10 @@ std::string particles_csv(const std::vector<ValidatedBed>& beds) {
       const auto& track = bed.tracks[t];
       for (const auto& at : track.at)
         for (std::size_t i = 0; i < at.id.size(); ++i)
-          text += fmt::format("\"{}\",{},{:.0f},{:.6g},{},{:.9g},{:.9g},{:.9g},{:.7g},{:.6g}\n", bed.name,
-                              track.label, track.rays, at.time_s, at.id[i], at.position_m[i].x,
-                              at.position_m[i].y, at.position_m[i].z, at.temperature_K[i], at.flux_W_m2[i]);
+          text +=
+              fmt::format("{},{},{:.0f},{:.6g},{},{:.9g},{:.9g},{:.9g},{:.7g},{:.6g}\n", text_cell(bed.name),
+                          text_cell(track.label), track.rays, at.time_s, at.id[i], at.position_m[i].x,
+                          at.position_m[i].y, at.position_m[i].z, at.temperature_K[i], at.flux_W_m2[i]);
     }
   return text;
 }
@@ -220,12 +222,12 @@ std::string validation_csv(const std::vector<ValidatedBed>& beds) {
         const SourceComparison with = compare(at, bed.tracks.front().at[k]);
         const double within = seconds_to_reach(goal_pct, with, track.seconds_per_update);
         text += fmt::format(
-            "{:.6g},{},{:.0f},{:.6g},{:.8g},{:.8g},{:.6g},{:.6g},{:.6g},{:.6g},{:.3e},{:.4g},\"{}\",{:g},{:.3g},{:.4g},{:.2g},"
+            "{:.6g},{},{:.0f},{:.6g},{:.8g},{:.8g},{:.6g},{:.6g},{:.6g},{:.6g},{:.3e},{:.4g},{},{:g},{:.3g},{:.4g},{:.2g},"
             "{:.4g},{}\n",
-            bed.solid_fraction, track.label, track.rays, at.time_s, at.mean_temperature_K, at.mean_flux_W_m2,
-            with.temperature_error_pct, with.flux_error_pct, with.particle_flux_rms_pct,
-            with.reference_noise_pct, at.energy_defect, track.seconds_per_update, bed.name, bed.emissivity,
-            with.flux_noise_pct, with.own_rms_pct, with.rms_error_pct, with.bias_pct,
+            bed.solid_fraction, text_cell(track.label), track.rays, at.time_s, at.mean_temperature_K,
+            at.mean_flux_W_m2, with.temperature_error_pct, with.flux_error_pct, with.particle_flux_rms_pct,
+            with.reference_noise_pct, at.energy_defect, track.seconds_per_update, text_cell(bed.name),
+            bed.emissivity, with.flux_noise_pct, with.own_rms_pct, with.rms_error_pct, with.bias_pct,
             std::isfinite(within) ? fmt::format("{:.4g}", within) : "");
       }
   return text;

@@ -17,7 +17,7 @@ Material read_material(TomlTable table, const std::string& default_name) {
       {"file",
        "a file with these keys, beside the scene or installed (\"alumina.toml\"); keys given here win"});
   Material m;
-  m.name = table.string({"name", "by which files of particles refer to it"}, default_name);
+  m.name = table.string({"name", "by which [particles] types refers to it"}, default_name);
   for (const auto& n : material_numbers()) {
     const auto standard = n.standard_like ? std::optional(m.*n.standard_like) : n.standard;
     const Key key(n.key, n.meaning, n.standard_as);

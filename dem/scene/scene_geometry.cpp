@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "dem/base/error.h"
 #include "dem/bed/wall_cover.h"
@@ -181,29 +184,25 @@ class GeometryReader {
   }
 
   /// The walls of one table, all alike but for what [mesh.solid."NAME"] says of each.
-  void add(TomlTable& table, std::vector<Wall> walls, const std::string& mesh = "") {
+  void add(TomlTable& table, std::vector<Wall> walls, const std::optional<std::string>& mesh = {}) {
     Wall properties;
     properties.emissivity = scene_.materials[0].emissivity;
     const bool all_chosen =
-        !mesh.empty() && !walls.empty() && std::all_of(walls.begin(), walls.end(), [&](const Wall& wall) {
-          return solid_table(table, mesh, wall).has("role");
+        mesh && !walls.empty() && std::all_of(walls.begin(), walls.end(), [&](const Wall& wall) {
+          return solid_table(table, *mesh, wall).has("role");
         });
     read_properties(table, properties, all_chosen);
     const bool two_sided =
         table.boolean({"two_sided", "both sides radiate (a thin plate in the bed)"}, false);
-    if (!mesh.empty() && walls.empty()) {  // no file was read: its solids' keys are known all the same
-      Wall unread{.name = mesh};
-      TomlTable solid = solid_table(table, mesh, unread);
-      if (!solid.present()) read_properties(solid, unread, true);
-    }
+    if (mesh && walls.empty()) read_unmatched_solids(table);
     for (auto& wall : walls) {
       Wall shaped = properties;
       shaped.name = wall.name;
       shaped.vertices = std::move(wall.vertices);
       shaped.triangles = std::move(wall.triangles);
       wall = std::move(shaped);
-      if (!mesh.empty())
-        if (TomlTable solid = solid_table(table, mesh, wall); solid.present())
+      if (mesh)
+        if (TomlTable solid = solid_table(table, *mesh, wall); solid.present())
           read_properties(solid, wall, true);
       const auto same = [&](const Wall& other) { return other.name == wall.name; };
       if (std::any_of(scene_.walls.begin(), scene_.walls.end(), same))
@@ -216,12 +215,28 @@ class GeometryReader {
     }
   }
 
+  /// No file was read: the keys of its solids are known, and checked, all the same.
+  void read_unmatched_solids(TomlTable& table) {
+    TomlTable solids = table.table(solids_key());
+    std::vector<std::string> names = solids.keys();
+    if (names.empty()) names.emplace_back();
+    for (const auto& name : names) {
+      Wall unread;
+      TomlTable solid = solids.table(solid_key(name));
+      read_properties(solid, unread, true);
+    }
+  }
+
+  static Key solids_key() { return {"solid", "properties of single solids of the file, by their names"}; }
+  static Key solid_key(const std::string& name) {
+    return {name, "a solid of the file; what it does not say is that of the mesh", {}, "NAME"};
+  }
+
   /// [mesh.solid."NAME"] of a wall of a mesh; NAME is what follows the name of the mesh in that of the wall.
   static TomlTable solid_table(TomlTable& table, const std::string& mesh, const Wall& wall) {
     const bool longer = wall.name.size() > mesh.size() + 1;
     const std::string solid = longer ? wall.name.substr(mesh.size() + 1) : wall.name;
-    TomlTable solids = table.table({"solid", "properties of single solids of the file, by their names"});
-    return solids.table({solid, "a solid of the file; what it does not say is that of the mesh", {}, "NAME"});
+    return table.table(solids_key()).table(solid_key(solid));
   }
 
   static void make_two_sided(Wall& wall) {

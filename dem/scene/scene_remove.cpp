@@ -22,9 +22,9 @@ void read_removals(TomlTable root, Scene& scene) {
     TomlTable below = table.table({"below_m", "a plane below which particles leave"});
     if (below.present()) {
       scene.removals.push_back(half_space(below));
-      if (table.has("min_m") || table.has("max_m"))
-        table.problem("below_m", "and a box are two places: write two [[remove]]");
-      continue;
+      const bool from = table.has("min_m"), to = table.has("max_m");
+      if (!from && !to) continue;
+      table.problem("below_m", "and a box are two places: write two [[remove]]");
     }
     Box box;
     box.min = table.vec3({"min_m", "lower corner of the box in which particles leave"}, {.unit = "m"});

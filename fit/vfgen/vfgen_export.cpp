@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "dem/base/error.h"
+#include "dem/base/files/csv.h"
 #include "dem/base/files/npz_file.h"
 #include "dem/base/files/text_file.h"
 #include "dem/base/program.h"
@@ -65,8 +66,9 @@ std::string csv_of(const ViewFactorFile& traced, const ClosedFactors& factors) {
   fmt::format_to(out, "from,to,from_name,to_name,factor,standard_error,distance_m\n");
   for_each_entry(traced.closed.pattern, [&](std::size_t i, std::size_t j, std::size_t k) {
     const auto distance = distances.between(i, j);
-    fmt::format_to(out, "{},{},\"{}\",\"{}\",{},{},{}\n", i, j, names[i], names[j], factors.value[k],
-                   factors.standard_error[k], distance ? fmt::format("{}", *distance) : std::string());
+    fmt::format_to(out, "{},{},{},{},{},{},{}\n", i, j, text_cell(names[i]), text_cell(names[j]),
+                   factors.value[k], factors.standard_error[k],
+                   distance ? fmt::format("{}", *distance) : std::string());
   });
   return fmt::to_string(text);
 }
