@@ -75,6 +75,8 @@ struct ClosureReport {
   double reciprocity_defect = 0;  ///< sqrt( sum (X_ij - X_ji)^2 / sum X_ij^2 ) before
   double reciprocity_chi2 = 0;    ///< reduced chi^2 of X_ij - X_ji against its variance; 0 without variances
   double largest_correction = 0;  ///< max |row scaling - 1|
+  double reciprocity_rms =
+      0;  ///< of (X_ij - X_ji) / sqrt(A_i A_j) over the pairs left, after: 0 but for row sums
   int sweeps = 0;
 };
 

@@ -139,6 +139,7 @@ void HeatModel::radiate(Bed& bed, double interval_s) {
   radiation_.missed_W = -sum(heat.heat_W);
   radiation_.error_squared_W2 += heat.isothermal_wall_heat_error_W * heat.isothermal_wall_heat_error_W;
   radiation_.closure_correction = std::max(radiation_.closure_correction, heat.closure_correction);
+  radiation_.reciprocity_rms = heat.reciprocity_rms;
   radiation_.absolute_heat_W += std::abs(heat.isothermal_wall_heat_W);
   radiation_.implicit_updates += state.implicit;
   radiation_.limited_share = std::max(radiation_.limited_share, drawn.limited_share);

@@ -19,6 +19,7 @@ struct RadiationTotals {
   double missed_W = 0;            ///< given by walls and got by no particle, held until the next update
   double error_squared_W2 = 0;    ///< sum over updates of the squared standard error of the wall heat
   double closure_correction = 0;  ///< largest so far
+  double reciprocity_rms = 0;     ///< of the view factors of the last update
   double absolute_heat_W = 0;     ///< sum over updates of |wall heat|
   double limited_share =
       0;  ///< largest share of the heats that had to be moved to keep temperatures within bounds
@@ -36,6 +37,7 @@ void visit_totals(Totals& totals, Integer integer, Real real) {
   real("missed_W", totals.missed_W);
   real("error_squared_W2", totals.error_squared_W2);
   real("closure_correction", totals.closure_correction);
+  real("reciprocity_rms", totals.reciprocity_rms);
   real("absolute_heat_W", totals.absolute_heat_W);
   real("limited_share", totals.limited_share);
 }

@@ -12,6 +12,7 @@
 #include "dem/base/files/csv.h"
 #include "dem/base/files/text_file.h"
 #include "dem/io/snapshot.h"
+#include "fit/correlation/correlation.h"
 
 namespace granrad {
 
@@ -101,6 +102,18 @@ Quantities of_json(const fs::path& file) {
   return all;
 }
 
+/// RMSEs of a fitted table, the largest and by row: pp_rmse, pw_rmse, 0.43:pp_rmse.
+Quantities of_table(const fs::path& file) {
+  Quantities all;
+  for (const auto& row : read_correlation(file).rows)
+    for (const auto& [name, rmse] :
+         {std::pair{"pp_rmse", row.statistics.pp_rmse}, std::pair{"pw_rmse", row.statistics.pw_rmse}}) {
+      all[fmt::format("{:.2f}:{}", row.solid_fraction, name)] = {rmse, 0};
+      all[name].value = std::max(all[name].value, rmse);
+    }
+  return all;
+}
+
 Quantities of_case(const StudyCase& one, const fs::path& folder) {
   switch (one.kind) {
     case StudyKind::run:
@@ -111,8 +124,9 @@ Quantities of_case(const StudyCase& one, const fs::path& folder) {
       return of_json(folder / "measure.json");
     case StudyKind::command:
       return fs::exists(folder / "results.json") ? of_json(folder / "results.json") : Quantities{};
-    case StudyKind::trace:
     case StudyKind::fit:
+      return of_table(folder / "table.toml");
+    case StudyKind::trace:
       break;
   }
   return {};

@@ -58,6 +58,7 @@ SourceInstant observe(Simulation& simulation, const Case& c, int draws) {
   instant.mean_flux_W_m2 = area_sum > 0 ? heat_sum / area_sum : 0;
   instant.flux_noise_W_m2 = rms(noise);
   instant.energy_defect = simulation.heat().ledger().relative_defect(bed, 0, 0);
+  instant.reciprocity_rms = simulation.heat().radiation().reciprocity_rms;
   return instant;
 }
 

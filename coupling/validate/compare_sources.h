@@ -17,6 +17,7 @@ struct SourceInstant {
   std::vector<double> temperature_K, flux_W_m2;  ///< flux received, Q / A
   double flux_noise_W_m2 = 0;                    ///< rms standard error of the particle fluxes; 0: not known
   double energy_defect = 0;
+  double reciprocity_rms = 0;  ///< of the closed view factors; 0 where closure keeps reciprocity
 };
 
 /// The heating of a frozen bed by one source.

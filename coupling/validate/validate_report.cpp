@@ -214,7 +214,7 @@ std::string validation_csv(const std::vector<ValidatedBed>& beds) {
       "solid_fraction,source,rays,time_s,mean_temperature_K,mean_flux_W_m2,temperature_error_pct,flux_error_"
       "pct,"
       "particle_flux_rms_pct,reference_noise_pct,energy_defect,seconds_per_update,bed,emissivity,flux_error_of_it_pct,own_rms_pct,"
-      "rms_error_of_it_pct,bias_pct,seconds_to_1_pct\n";
+      "rms_error_of_it_pct,bias_pct,seconds_to_1_pct,reciprocity_rms\n";
   for (const auto& bed : beds)
     for (const auto& track : bed.tracks)
       for (std::size_t k = 0; k < track.at.size(); ++k) {
@@ -223,12 +223,12 @@ std::string validation_csv(const std::vector<ValidatedBed>& beds) {
         const double within = seconds_to_reach(goal_pct, with, track.seconds_per_update);
         text += fmt::format(
             "{:.6g},{},{:.0f},{:.6g},{:.8g},{:.8g},{:.6g},{:.6g},{:.6g},{:.6g},{:.3e},{:.4g},{},{:g},{:.3g},{:.4g},{:.2g},"
-            "{:.4g},{}\n",
+            "{:.4g},{},{:.4g}\n",
             bed.solid_fraction, text_cell(track.label), track.rays, at.time_s, at.mean_temperature_K,
             at.mean_flux_W_m2, with.temperature_error_pct, with.flux_error_pct, with.particle_flux_rms_pct,
             with.reference_noise_pct, at.energy_defect, track.seconds_per_update, text_cell(bed.name),
             bed.emissivity, with.flux_noise_pct, with.own_rms_pct, with.rms_error_pct, with.bias_pct,
-            std::isfinite(within) ? fmt::format("{:.4g}", within) : "");
+            std::isfinite(within) ? fmt::format("{:.4g}", within) : "", at.reciprocity_rms);
       }
   return text;
 }

@@ -21,7 +21,7 @@ bool is_last_step(const ValidatedBed& bed, std::size_t track);
 
 /// validation.csv: solid_fraction,source,rays,time_s,mean_temperature_K,mean_flux_W_m2,temperature_error_pct,
 /// flux_error_pct,particle_flux_rms_pct,reference_noise_pct,energy_defect,seconds_per_update,bed,
-/// emissivity
+/// emissivity,flux_error_of_it_pct,own_rms_pct,rms_error_of_it_pct,bias_pct,seconds_to_1_pct,reciprocity_rms
 std::string validation_csv(const std::vector<ValidatedBed>& beds);
 
 /// particles.csv: bed,source,rays,time_s,particle,x_m,y_m,z_m,temperature_K,flux_W_m2, of the last step of each ladder.

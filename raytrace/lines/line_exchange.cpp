@@ -64,15 +64,30 @@ int chord_directions(const LineScene& scene) {
       std::clamp<std::size_t>(spheres_wanted / std::max<std::size_t>(1, scene.x.size()), 1, most));
 }
 
+/// Directions between two merges of what was met: as many as the memory affords.
+int directions_per_merge(const LineOptions& options, double ends, int directions) {
+  const double affordable = static_cast<double>(options.memory_limit_bytes / 4 / PairCounts::bytes_per_event);
+  const double events = std::min(affordable, std::max(least_events, merged_directions * ends));
+  return static_cast<int>(std::clamp(events / ends, 1.0, static_cast<double>(directions)));
+}
+
+/// What the lines of the direction aimed at meet.
+void meet(LinePass& pass, bool periodic, PairEvents& found) {
+  if (periodic)
+    pass.emit_pairs([&](std::int32_t surface, std::int32_t from) {
+      found.add(surface, static_cast<std::uint32_t>(from) << line_run_bits);
+    });
+  else
+    pass.emit_runs([&](const std::int32_t* p, const std::int32_t* end) { consume(found, p, end); });
+}
+
 LineSums sum_over_lines(const LineScene& scene, const LineOptions& options, int directions) {
   const std::size_t surfaces = scene.surface_count();
   std::vector<char> kind(surfaces, 1);
   std::fill_n(kind.begin(), scene.x.size(), 0);
   const int threads = line_threads(options.threads);
   const double ends = ends_per_direction(scene);
-  const double affordable = static_cast<double>(options.memory_limit_bytes / 4 / PairCounts::bytes_per_event);
-  const double events = std::min(affordable, std::max(least_events, merged_directions * ends));
-  const int block = static_cast<int>(std::clamp(events / ends, 1.0, static_cast<double>(directions)));
+  const int block = directions_per_merge(options, ends, directions);
   PairCounts counts(std::move(kind), options.memory_limit_bytes / PairCounts::bytes_per_pair, block * ends,
                     threads);
   std::int64_t leaked = 0, leaked_in_chords = 0;
@@ -90,12 +105,7 @@ LineSums sum_over_lines(const LineScene& scene, const LineOptions& options, int 
         for (std::int64_t k = from + mine.begin; k < from + mine.end; ++k) {
           if (!monitor.go_on(1)) continue;
           pass.aim(line_frame(options.seed, replicate, static_cast<int>(k), directions));
-          if (scene.is_periodic())
-            pass.emit_pairs([&](std::int32_t surface, std::int32_t from) {
-              found.add(surface, static_cast<std::uint32_t>(from) << line_run_bits);
-            });
-          else
-            pass.emit_runs([&](const std::int32_t* p, const std::int32_t* end) { consume(found, p, end); });
+          meet(pass, scene.is_periodic(), found);
         }
         counts.merge(options.seed);
       }

@@ -92,6 +92,13 @@ TEST(Closure, RowSumClosesButBreaksReciprocity) {
   const ExchangeAreas x = close(one_way_estimate(box_counts(2000, 3)), Closure::row_sum, report);
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(row_sum(x, i) / x.area_m2[i], 1, 1e-12);
   EXPECT_NE(value(x, 0, 2), value(x, 2, 0));
+  double squares = 0, pairs = 0;  // F_ij - F_ji of equal areas, by hand
+  for (std::size_t i = 0; i < 6; ++i)
+    for (std::size_t j = i + 1; j < 6; ++j) {
+      squares += std::pow(value(x, i, j) - value(x, j, i), 2) / (x.area_m2[i] * x.area_m2[j]);
+      pairs += value(x, i, j) > 0 || value(x, j, i) > 0;
+    }
+  EXPECT_NEAR(report.reciprocity_rms, std::sqrt(squares / pairs), 1e-15);
 }
 
 TEST(Closure, DroppedSurfacesLeaveNoTrace) {
