@@ -7,7 +7,6 @@
 
 #include "coupling/heat/wall_area.h"
 #include "coupling/heat/wall_coefficients.h"
-#include "coupling/simulation/heat_model.h"
 
 namespace granrad {
 
@@ -46,16 +45,6 @@ std::string outside_walls_note(const Case& c) {
       names);
 }
 
-std::string outside_particles_note(const Case& c, const Bed& bed) {
-  const auto inside = in_region(bed, c.flow.region);
-  const auto outside = std::count(inside.begin(), inside.end(), 0);
-  if (outside == 0 || c.flow.feed.kind != FeedSettings::Kind::none) return "";
-  return fmt::format(
-      "{} of {} particles are outside the heat-transfer region at time 0: they are neither heated nor "
-      "averaged there; [region] min_m, max_m would take them in",
-      outside, bed.size());
-}
-
 std::string temperatures_note(const Case& c, const Bed& bed) {
   const auto walls = hot_walls(bed, c.flow.region);
   if (walls.empty() || at_one_temperature(bed, walls)) return "";
@@ -69,12 +58,22 @@ std::string temperatures_note(const Case& c, const Bed& bed) {
       list);
 }
 
+std::string filling_note(const Case& c, const Bed& bed) {
+  const FeedSettings& feed = c.flow.feed;
+  const auto asked = static_cast<std::size_t>(feed.particle_count);
+  if (feed.kind != FeedSettings::Kind::hopper || feed.rate_1_s > 0 || bed.size() >= asked) return "";
+  return fmt::format(
+      "feed.particle_count = {}: {} particles are there at time 0, as many as fit into feed.fill_region; the others follow "
+      "where there is room",
+      asked, bed.size());
+}
+
 }  // namespace
 
 std::vector<std::string> case_notes(const Case& c, const Bed& bed) {
   std::vector<std::string> notes;
   for (const auto& note :
-       {modulus_note(c), outside_walls_note(c), outside_particles_note(c, bed), temperatures_note(c, bed)})
+       {modulus_note(c), outside_walls_note(c), temperatures_note(c, bed), filling_note(c, bed)})
     if (!note.empty()) notes.push_back(note);
   return notes;
 }

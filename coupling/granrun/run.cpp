@@ -65,7 +65,18 @@ void begin(Simulation& simulation, const Case& c, const std::filesystem::path& w
     say(options, "note: " + note);
 }
 
-/// Whether a case is done as it stands: its record says so, for this end, and its history reaches it.
+/// A finished case is worth its last frame: a damaged one is made again from the frame before.
+bool last_frame_is_whole(const CaseFolder& folder) {
+  const auto frames = folder.frames();
+  try {
+    return !frames.empty() && read_frame(frames.back().file).bed.step == frames.back().step;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+/// Whether a case is done as it stands: its record says so, for this end, its history reaches it and its last frame can
+/// be read.
 bool is_done(const std::filesystem::path& where, const Case& c) {
   if (!CaseFolder::holds_case(where) || !is_finished(where)) return false;
   const CaseFolder folder(where);
@@ -73,7 +84,7 @@ bool is_done(const std::filesystem::path& where, const Case& c) {
   const auto& times = read_history(folder.history()).at("time_s");
   const double rounding = 1e-9 * record.end_time_s;
   return !times.empty() && std::abs(times.back() - record.end_time_s) <= rounding &&
-         read_case(where / "scene.toml", {}).effective_text == c.portable_text;
+         read_case(where / "scene.toml", {}).effective_text == c.portable_text && last_frame_is_whole(folder);
 }
 
 }  // namespace

@@ -111,6 +111,20 @@ void remark_on_implicit_radiation(const Simulation& simulation, const RunOptions
                     100 * totals.limited_share));
 }
 
+/// A feed that could not do what was asked of it.
+void remark_on_feed(const Simulation& simulation, const Case& c, const RunOptions& options) {
+  constexpr double few = 0.01;  // a bed that is refilled now and then waits for a gap
+  const FeedTotals fed = simulation.fed();
+  const auto there = static_cast<double>(simulation.bed().size());
+  if (c.flow.feed.kind == FeedSettings::Kind::none || static_cast<double>(fed.waiting) <= few * there + 1)
+    return;
+  say(options,
+      fmt::format(
+          "note: {} particles of the feed were due and found no room ({:.0f} are in the system); enlarge "
+          "feed.fill_region, or ask for fewer at a time",
+          fed.waiting, there));
+}
+
 }  // namespace
 
 void say(const RunOptions& options, const std::string& text) {
@@ -159,6 +173,7 @@ int follow(Simulation& simulation, const Case& c, const CaseFolder& folder, cons
   }
   progress.finish();
   remark_on_implicit_radiation(simulation, options);
+  remark_on_feed(simulation, c, options);
   if (const auto threads = simulation.flow_threads(); threads.most > 1)
     say(options, fmt::format("threads {} of {} for the flow ({} particles)", threads.used, threads.most,
                              simulation.bed().size()));

@@ -23,9 +23,9 @@ double emission_slope(const Bed& bed, std::size_t i, double temperature_K) {
   return 4 * bed.materials[bed.material[i]].emissivity * emissive_power(temperature_K) / temperature_K * area;
 }
 
-/// Heat into every particle, W, and what walls give, from the temperatures at the start of the step.
-HeatPaths collect_heats(const Bed& bed, const Conductances& conductances, std::vector<double>& heat_W) {
-  const auto& T = bed.temperature_K;
+/// Heat into every particle, W, and what walls give, with the particles at T.
+HeatPaths collect_heats(const Bed& bed, const Conductances& conductances, const std::vector<double>& T,
+                        std::vector<double>& heat_W) {
   for (const auto& g : conductances.particles) {
     const double q = (g.solid_W_K + g.gas_W_K) * (T[g.j] - T[g.i]);
     heat_W[g.i] += q;
@@ -82,14 +82,27 @@ std::vector<double> radiative_relaxation(const Bed& bed, double hottest_K, doubl
   return k;
 }
 
+std::vector<double> mid_step_temperatures_K(const Bed& bed, const Conductances& conductances, double dt_s) {
+  std::vector<double> heat_W(bed.size(), 0.0), middle_K = bed.temperature_K;
+  collect_heats(bed, conductances, bed.temperature_K, heat_W);
+  for (std::size_t i = 0; i < bed.size(); ++i)
+    middle_K[i] += 0.5 * dt_s * heat_W[i] / heat_capacity_J_K(bed, i);
+  return middle_K;
+}
+
 HeatPaths advance_temperatures(Bed& bed, const Conductances& conductances, double dt_s) {
+  return advance_temperatures(bed, conductances, dt_s, bed.temperature_K);
+}
+
+HeatPaths advance_temperatures(Bed& bed, const Conductances& conductances, double dt_s,
+                               const std::vector<double>& from_K) {
   const double limit = conduction_step_limit_s(bed, conductances);
   if (dt_s > limit)
     throw NumericalError(advised(
         fmt::format("conduction step = {:.4g} s (dt sum(G)/(m c) beyond {})", dt_s, conduction_step_fraction),
         fmt::format("the largest allowed is {:.4g} s", limit)));
   std::vector<double> heat_W(bed.size(), 0.0);
-  HeatPaths received = collect_heats(bed, conductances, heat_W);
+  HeatPaths received = collect_heats(bed, conductances, from_K, heat_W);
   for (std::size_t i = 0; i < bed.size(); ++i) {
     double& T = bed.temperature_K[i];
     T += dt_s * heat_W[i] / heat_capacity_J_K(bed, i);

@@ -44,6 +44,15 @@ std::vector<double> radiative_relaxation(const Bed& bed, double hottest_K, doubl
 /// (naming it), or when a temperature leaves (0, infinity).
 HeatPaths advance_temperatures(Bed& bed, const Conductances& conductances, double dt_s);
 
+/// The same with the heats of other temperatures `from_K`: those of the middle of the step make it of second order.
+HeatPaths advance_temperatures(Bed& bed, const Conductances& conductances, double dt_s,
+                               const std::vector<double>& from_K);
+
+/// Temperatures half a step ahead by Euler, K (explicit midpoint rule; Hairer, Norsett, Wanner, Solving ordinary differential
+/// equations I, II.1). Up to conduction_step_fraction the step then taken, I - A + A^2 / 2 with A = dt G / (m c), has no
+/// negative entry and rows that sum to one: no temperature leaves the range of those around.
+std::vector<double> mid_step_temperatures_K(const Bed& bed, const Conductances& conductances, double dt_s);
+
 /// Temperatures in the middle of the coming radiation interval, K, extrapolated with the heats held until now:
 /// T_i + Q_i dt / (2 m c). A source asked for heats at these makes holding them second order in dt instead of
 /// first (error of a lone sphere after 2 s at dt = 0.01 s: 2e-7 instead of 1.1e-4), and it conserves energy

@@ -40,6 +40,7 @@ std::string host_name() {
 CaseLock::CaseLock(const fs::path& folder) : file_(folder / file_name) {
   std::error_code failure;
   fs::create_directories(folder, failure);
+  if (failure) throw IoError(fmt::format("{}: cannot be created ({})", folder.string(), failure.message()));
   for (;;) {
     descriptor_ = open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
     if (descriptor_ < 0)

@@ -111,9 +111,9 @@ void Flow::advance(Bed& bed, const TimePlan& plan, std::int64_t tick) {
 }
 
 const NearPairs& Flow::near_pairs(const Bed& bed, double max_gap_m) {
-  if (pairs_known_ && !moves()) return pairs_;
+  if (!moves() && bed.time_s < pairs_until_s_) return pairs_;
   pairs_ = engine_ ? engine_->near_pairs(bed, max_gap_m) : granrad::near_pairs(bed, max_gap_m);
-  pairs_known_ = true;
+  pairs_until_s_ = next_opening_s(bed.walls, bed.time_s);
   return pairs_;
 }
 

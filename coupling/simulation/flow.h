@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "coupling/simulation/time_plan.h"
+#include "dem/base/constants.h"
 #include "dem/engine.h"
 #include "dem/feed/feed.h"
 
@@ -41,7 +42,7 @@ class Flow {
   FeedTotals recorded_;             ///< what came and went in a recording
   std::unique_ptr<Engine> engine_;  ///< made at the first advance, when the bed is known
   NearPairs pairs_;
-  bool pairs_known_ = false;
+  double pairs_until_s_ = -infinity;  ///< of a frozen bed: until a shutter opens
   bool records_touches_ = false;
 };
 

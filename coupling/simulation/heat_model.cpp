@@ -55,14 +55,14 @@ HeatModel::HeatModel(const Case& c, int threads) : case_(c), threads_(threads) {
 const Conductances& HeatModel::conduct(const Bed& bed, Flow& flow) {
   const ConductionSettings& settings = case_.heat.conduction;
   if (!settings.solid && !settings.gas) return conductances_;
-  if (conductances_known_ && !flow.moves()) return conductances_;
+  if (!flow.moves() && bed.time_s < conductances_until_s_) return conductances_;
   const double largest = bed.size() ? *std::max_element(bed.radius_m.begin(), bed.radius_m.end()) : 0;
   const auto touches = settings.solid && !settings.rough ? flow.touches(bed) : std::nullopt;
   const bool needs_pairs = !touches || settings.gas;
   conductances_ = conductances(
       bed, needs_pairs ? flow.near_pairs(bed, lens_cutoff_gap_m(settings, largest)) : NearPairs{}, settings,
       in_region(bed, case_.flow.region), touches ? &*touches : nullptr);
-  conductances_known_ = true;
+  conductances_until_s_ = next_opening_s(bed.walls, bed.time_s);
   return conductances_;
 }
 

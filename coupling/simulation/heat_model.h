@@ -7,6 +7,7 @@
 #include "coupling/simulation/flow.h"
 #include "coupling/simulation/heat_scene.h"
 #include "coupling/simulation/wall_heats.h"
+#include "dem/base/constants.h"
 #include "raytrace/exchange_source.h"
 
 namespace granrad {
@@ -90,7 +91,7 @@ class HeatModel {
   int threads_;
   std::unique_ptr<ExchangeSource> source_;  ///< made at the first update
   Conductances conductances_;
-  bool conductances_known_ = false;
+  double conductances_until_s_ = -infinity;  ///< of a frozen bed: until a shutter opens
   EnergyLedger ledger_;
   WallHeats walls_;
   RadiationTotals radiation_;

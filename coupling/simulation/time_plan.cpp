@@ -17,7 +17,7 @@ namespace {
 constexpr std::int64_t usual_steps_per_tick =
     100;  // contacts last hundreds of steps; conduction is slower still
 constexpr std::int64_t parts_of_a_frozen_tick = 1000;  // a decimal end falls on one of them
-constexpr double most_steps = 1e13, most_rows = 1e8, most_frames = 1e6;
+constexpr double most_steps = 1e13, most_rows = 1e8, most_frames = 1e6, most_updates = 1e9;
 constexpr double whole_number_tolerance = 1e-6;  // decimal input: 0.01 / 1e-5 is a whole number
 
 struct Interval {
@@ -160,6 +160,9 @@ TimePlan make_time_plan(const Case& c, const StepLimits& limits, double conducti
                  "raise output.every_s");
   refuse_endless(problems, "frames", c.flow.end_time_s / every.frame.seconds, most_frames,
                  "raise output.frames_every_s");
+  if (every.radiation)
+    refuse_endless(problems, "updates of the radiation", c.flow.end_time_s / every.radiation->seconds,
+                   most_updates, "raise radiation.every_s");
   plan.steps_per_tick = choose_steps_per_tick(c, divisor, plan.step_s, conduction_limit_s, problems);
   if (!problems.empty()) throw InputError(problems);
 

@@ -25,7 +25,7 @@ const std::vector<std::pair<Quantity, Words>>& exact_names() {
       {z, {"z", "zu"}},
       {radius, {"radius"}},
       {diameter, {"diameter"}},
-      {temperature, {"temperature", "T", "Temp", "f_Temp[0]", "f_Temp"}},
+      {temperature, {"temperature", "T", "Temp", "f_Temp[0]", "f_Temp", "f_T", "c_T", "v_T", "d_T"}},
       {vx, {"vx"}},
       {vy, {"vy"}},
       {vz, {"vz"}},
@@ -106,6 +106,15 @@ std::string plain(std::string_view name) {
   return text;
 }
 
+/// T with a unit that is not kelvin, or of some part of a particle.
+bool short_for_temperature(const std::string& text) {
+  static const Words known{"tp",     "t_p",       "t_c",        "t_f",       "t_s",
+                           "t_degc", "t_celsius", "t_particle", "t_surface", "t_mean"};
+  return std::find(known.begin(), known.end(), text) != known.end() || text.starts_with("t (") ||
+         text.starts_with("t [") || text.starts_with("t(") || text.starts_with("t[c") ||
+         text.starts_with("t[d");
+}
+
 std::optional<Quantity> quantity_of(const std::string& text) {
   for (const auto& [quantity, words] : plain_names())
     if (std::find(words.begin(), words.end(), text) != words.end()) return quantity;
@@ -167,8 +176,9 @@ void ColumnNames::refuse_near_misses() {
   const bool sized = has(Quantity::radius) || has(Quantity::diameter);
   for (std::size_t c = 0; c < names_.size(); ++c) {
     const std::string text = bare(names_[c]);
-    if (taken(c) || text.size() < 4 || text.find("magnitude") != text.npos) continue;
-    std::string meant = closest_word(text, known_words);
+    const bool is_some_t = short_for_temperature(text);
+    if (taken(c) || (text.size() < 4 && !is_some_t) || text.find("magnitude") != text.npos) continue;
+    std::string meant = is_some_t ? "temperature" : closest_word(text, known_words);
     for (const std::string& word : known_words)
       if (text.starts_with(word + "_") || text.starts_with(word + " ") || text.starts_with(word + "(") ||
           text.starts_with(word + "["))

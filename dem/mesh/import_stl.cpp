@@ -19,18 +19,23 @@ namespace {
 
 constexpr std::size_t binary_head = 84, binary_facet = 50;  // bytes; the head ends with the number of facets
 
+/// Whatever its head says: some begin with "solid".
 bool is_binary(const std::string& bytes) {
-  if (bytes.size() < binary_head) return false;
-  std::uint32_t count = 0;
-  std::memcpy(&count, bytes.data() + binary_head - sizeof count, sizeof count);
-  return bytes.size() == binary_head + binary_facet * count;
+  constexpr std::size_t enough = 512;  // coordinates have bytes of zero, text has none
+  return bytes.size() >= binary_head && bytes.substr(0, enough).find('\0') != std::string::npos;
 }
 
-Facets read_binary(const std::string& bytes) {
+/// What follows the last facet belongs to no facet: some programs write more.
+Facets read_binary(const std::string& bytes, const std::string& file) {
+  std::uint32_t count = 0;
+  std::memcpy(&count, bytes.data() + binary_head - sizeof count, sizeof count);
+  const std::size_t whole = (bytes.size() - binary_head) / binary_facet;
+  if (whole < count)
+    throw InputError(fmt::format("{}: the file is cut short: {} of {} triangles", file, whole, count));
   Facets solid;
-  for (std::size_t at = binary_head; at < bytes.size(); at += binary_facet) {
+  for (std::size_t k = 0; k < count; ++k) {
     float facet[12];  // normal, then corners
-    std::memcpy(facet, bytes.data() + at, sizeof facet);
+    std::memcpy(facet, bytes.data() + binary_head + binary_facet * k, sizeof facet);
     for (int corner = 3; corner < 12; corner += 3)
       solid.corners.push_back({facet[corner], facet[corner + 1], facet[corner + 2]});
   }
@@ -117,8 +122,8 @@ void name_apart(std::vector<Facets>& solids) {
 std::vector<Wall> import_stl(const std::filesystem::path& file, double scale, const std::string& name,
                              std::string* note) {
   const std::string bytes = file_bytes(file);
-  std::vector<Facets> solids =
-      is_binary(bytes) ? std::vector{read_binary(bytes)} : TextReader(file.string(), bytes).read();
+  std::vector<Facets> solids = is_binary(bytes) ? std::vector{read_binary(bytes, file.string())}
+                                                : TextReader(file.string(), bytes).read();
   std::erase_if(solids, [](const Facets& solid) { return solid.corners.empty(); });
   name_apart(solids);
   MeshMending mending;

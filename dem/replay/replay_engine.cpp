@@ -33,10 +33,11 @@ class ReplayEngine : public Engine {
   }
 
   NearPairs near_pairs(const Bed& bed, double max_gap_m) override {
-    if (pairs_of_ != generation_ || gap_m_ != max_gap_m) {
+    if (pairs_of_ != generation_ || gap_m_ != max_gap_m || bed.time_s >= pairs_until_s_) {
       pairs_ = granrad::near_pairs(bed, max_gap_m);
       pairs_of_ = generation_;
       gap_m_ = max_gap_m;
+      pairs_until_s_ = next_opening_s(bed.walls, bed.time_s);
     }
     return pairs_;
   }
@@ -103,7 +104,7 @@ class ReplayEngine : public Engine {
   Recording recording_;
   Snapshot before_;
   std::optional<Snapshot> after_;
-  double shown_s_ = 0, gap_m_ = -1;
+  double shown_s_ = 0, gap_m_ = -1, pairs_until_s_ = 0;  ///< until a shutter opens
   std::int64_t generation_ = 0, pairs_of_ = -1;
   NearPairs pairs_;
 };

@@ -192,7 +192,7 @@ TEST(Conduction, RefusesAStepBeyondTheLimitAndNamesIt) {
 }
 
 // Two equal spheres meet at the mean: T1 - T2 = D exp(-2 t G / (m c)). A step of 20 limits is 20 parts of it, each of
-// first order: (1 - 2 0.1)^20 of D is left, never less than none.
+// second order: (1 - x + x^2 / 2)^20 of D is left with x = 2 0.1, never less than none.
 // Planted: one part, which is refused; the heats of the last part alone, which leave the books open.
 TEST(Conduction, LongStepsAreDoneInPartsThatNeverOvershoot) {
   Bed bed = pair_at(7.95e-4);
@@ -202,7 +202,7 @@ TEST(Conduction, LongStepsAreDoneInPartsThatNeverOvershoot) {
   const double energy = thermal_energy_J(bed);
   std::vector<HeatPaths> from_walls_J;
   advance_in_parts(bed, g, 20 * limit * (1 - 1e-9), from_walls_J);
-  EXPECT_NEAR((bed.temperature_K[0] - bed.temperature_K[1]) / 600, std::pow(1 - 2 * 0.1, 20), 1e-9);
+  EXPECT_NEAR((bed.temperature_K[0] - bed.temperature_K[1]) / 600, std::pow(1 - 0.2 + 0.02, 20), 1e-9);
   EXPECT_NEAR(thermal_energy_J(bed) / energy, 1, 1e-14);
   EXPECT_THROW(advance_in_parts(bed, g, 1e6 * limit, from_walls_J), NumericalError);
 }
@@ -215,6 +215,19 @@ TEST(Conduction, RefusesMaterialsItCannotUse) {
   gas_only.solid = false;
   gas_only.gas = GasLens{};
   EXPECT_NO_THROW(conductances(bed, touching(7.95e-4), gas_only));
+}
+
+// The longest steps that are allowed, against the closed form: the difference of a pair goes with exp(-2 G t / (m c)).
+// To plant: heats of the start of each step (28 K of 700 K off after a time constant).
+TEST(Conduction, TheLongestStepsFollowTheExponential) {
+  Bed bed = pair_at(7.95e-4);
+  const auto g = conductances(bed, touching(7.95e-4), {});
+  const double limit = conduction_step_limit_s(bed, g);
+  std::vector<HeatPaths> from_walls_J;
+  for (int k = 1; k <= 20; ++k) {
+    advance_in_parts(bed, g, limit * (1 - 1e-9), from_walls_J);
+    EXPECT_NEAR(bed.temperature_K[1] - bed.temperature_K[0], 700 * std::exp(-0.2 * k), 3.0) << k;
+  }
 }
 
 }  // namespace

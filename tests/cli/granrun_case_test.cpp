@@ -108,6 +108,76 @@ TEST(GranrunCase, KeepsItsHistoryWhenNoFrameCanBeRead) {
   EXPECT_EQ(content(folder / "history.csv"), before.at("history.csv"));
 }
 
+// A finished case is worth its last frame (to plant: its record alone believed, the damaged frame stays).
+TEST(GranrunCase, AFinishedOneWithADamagedLastFrameIsMadeWholeAgain) {
+  Scratch scratch;
+  const auto scene = scratch.write("plug.toml", small_plug);
+  const auto folder = scratch.root / "case";
+  ASSERT_EQ(granrun(scratch, run_line(scene, folder, "-q")).code, 0);
+  const auto before = everything(folder);
+  std::string last;
+  for (const auto& [name, text] : before)
+    if (name.starts_with("frames/")) last = name;
+  for (const std::string& damage :
+       {before.at(last).substr(0, 20000), std::string("no frame"), std::string()}) {
+    std::ofstream(folder / last, std::ios::trunc | std::ios::binary) << damage;
+    const auto again = granrun(scratch, run_line(scene, folder, "-q --resume"));
+    EXPECT_EQ(again.code, 0) << again.err;
+    EXPECT_NE(again.err.find("trying the frame before"), std::string::npos) << again.err;
+    for (const std::string& name : {last, std::string("history.csv"), std::string("walls.csv")})
+      EXPECT_TRUE(content(folder / name) == before.at(name)) << name;
+  }
+}
+
+// To plant: only the last row looked at.
+TEST(GranrunCase, SaysWhereRowsOfItsHistoryAreMissing) {
+  Scratch scratch;
+  const auto scene = scratch.write("plug.toml", small_plug);
+  const auto folder = scratch.root / "case";
+  ASSERT_EQ(granrun(scratch, run_line(scene, folder, "-q")).code, 0);
+  std::istringstream history(content(folder / "history.csv"));
+  std::ofstream out(folder / "history.csv", std::ios::trunc);
+  std::string line;
+  for (int k = 0; std::getline(history, line); ++k)
+    if (k != 3) out << line << "\n";
+  out.close();
+  const auto again = granrun(scratch, run_line(scene, folder, "--resume --set scene.end_time_s=0.05"));
+  EXPECT_EQ(again.code, 0);
+  EXPECT_NE(again.err.find("are missing"), std::string::npos) << again.err;
+}
+
+// To plant: nothing said of what the region cannot hold.
+TEST(GranrunCase, AFeedThatFindsNoRoomSaysSo) {
+  Scratch scratch;
+  const auto hopper = [&](const std::string& keys) {
+    const std::string plug =
+        small_plug.substr(small_plug.find("[feed]"), small_plug.find("[dem]") - small_plug.find("[feed]"));
+    const auto text =
+        edited(small_plug, plug,
+               "[feed]\nkind = \"hopper\"\nvelocity_m_s = 0.1\nremove_below_m = -0.001\n" + keys +
+                   "\n[feed.fill_region]\nmin_m = [0, 0, 0.002]\nmax_m = [0.004, 0.003, 0.006]\n");
+    const auto out = granrun(scratch, run_line(scratch.write("hopper.toml", text), scratch.root / "case",
+                                               "--set scene.end_time_s=0.004"));
+    EXPECT_EQ(out.code, 0) << out.err;
+    fs::remove_all(scratch.root / "case");
+    return out.err;
+  };
+  const auto too_many = hopper("particle_count = 5000");
+  EXPECT_NE(too_many.find("feed.particle_count = 5000: "), std::string::npos) << too_many;
+  EXPECT_NE(too_many.find("were due and found no room"), std::string::npos) << too_many;
+  const auto too_fast = hopper("particle_count = 5000\nrate_1_s = 1e6");
+  EXPECT_NE(too_fast.find("were due and found no room"), std::string::npos) << too_fast;
+  EXPECT_EQ(hopper("particle_count = 20").find("room"), std::string::npos);
+}
+
+TEST(GranrunCase, AFolderThatCannotBeMadeSaysWhy) {
+  Scratch scratch;
+  const auto scene = scratch.write("plug.toml", small_plug);
+  const auto refused = granrun(scratch, run_line(scene, "/proc/granrad", "-q"));
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_NE(refused.err.find("/proc/granrad: cannot be created"), std::string::npos) << refused.err;
+}
+
 TEST(GranrunCase, HangUpAndUserSignalSaveACheckpoint) {
   Scratch scratch;
   const auto scene =

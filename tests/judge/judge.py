@@ -78,6 +78,7 @@ class Judge:
         case = self.run(scene, first)
         if case is None:
             return False
+        scene = dict(scene, step_s=case.answer["step_s"])
         oracles.books(case)
         oracles.bounds(case)
         oracles.count(case)
@@ -127,9 +128,10 @@ def simpler(scene):
         for start in range(0, len(particles) if part else 0, max(part, 1)):
             if part and len(particles) > part:
                 yield scenes.changed(scene, particles=particles[:start] + particles[start + part:])
-    for key, value in (("gas", None), ("rows", 3), ("gravity", [0.0] * 3), ("plates", []), ("remove", []), ("dem", {}),
+    for key, value in (("gas", None), ("rows", 3), ("gravity", [0.0] * 3), ("plates", []), ("blocks", []), ("remove", []), ("dem", {}),
+                       ("region", None), ("every_steps", None),
                        ("wall_style", "box"), ("radiation_every", scene["every"])):
-        if scene[key] != value:
+        if scene.get(key, value) != value:
             yield scenes.changed(scene, **{key: value})
     if len(scene["materials"]) > 1:
         other = copy.deepcopy(scene)

@@ -74,6 +74,7 @@ Json run(const std::string& scene, const std::string& frame, int threads) {
   Json result{{"code", 0}, {"rows", Json::array()}, {"walls", Json::array()}};
   Extremes extremes;
   extremes.look_at(simulation->bed());
+  result["step_s"] = simulation->plan().step_s;
   result["first_count"] = simulation->bed().size();
   const auto middle = simulation->plan().end_tick / 2;
   while (!simulation->finished()) {

@@ -62,7 +62,8 @@ def generate(seed):
     scene = {"seed": seed, "frozen": frozen, "diameter": d, "low": low, "size": size, "periodic": periodic,
              "isothermal": isothermal, "particle_K": first_K, "source": source, "feed": None, "wall_style": "box",
              "gravity": [0.0, 0.0, 0.0], "materials": [dict(ALUMINA)], "gas": None, "particles": [], "remove": [],
-             "plates": [], "engine": "none" if frozen else "native", "dem": {}, "surroundings_K": None}
+             "plates": [], "engine": "none" if frozen else "native", "dem": {}, "surroundings_K": None, "region": None,
+             "drop_open": False, "every_steps": None, "recorded": None}
     material(r, scene)
     walls(r, scene)
     if feed == "file":
@@ -70,6 +71,12 @@ def generate(seed):
         particles(r, scene)
     else:
         scene["feed"] = inflow(r, scene, feed)
+        if feed == "hopper" and r.random() < 0.3:  # poured onto a bed of other sizes and materials
+            particles(r, scene)
+    if r.random() < 0.2:
+        region(r, scene)
+    if r.random() < 0.15:
+        shutter(r, scene)
     if not frozen and feed != "plug":
         scene["gravity"] = r.choice([[0.0, 0.0, 0.0], [0.0, 0.0, -9.81], [1.0, -2.0, -9.0]])
     if not frozen:
@@ -99,9 +106,11 @@ def steps(r, scene):
 def motion(r, scene):
     """What only moving beds have."""
     if not scene["periodic"] and not scene["plates"]:
-        scene["wall_style"] = r.choice(["box", "box", "polygons", "halves", "meshes"])
+        scene["wall_style"] = r.choice(["box", "box", "polygons", "halves", "meshes", "solids"])
     if r.random() < 0.1:
         scene["dem"]["precision"] = "mixed"
+    if r.random() < 0.2:
+        scene["every_steps"] = 1
     if r.random() < 0.05 and not scene["feed"]:
         scene["engine"] = "liggghts"
     if scene["feed"]:
@@ -123,9 +132,11 @@ def motion(r, scene):
 
 def plates(r, scene):
     """A thin plate in the bed, or a patch on a wall, as rectangles across an axis."""
-    kind = r.choices(["none", "plate", "patch"], [7, 1, 1])[0]
+    kind = r.choices(["none", "plate", "patch", "block"], [7, 1, 1, 1])[0]
     if kind == "none" or scene["periodic"]:
         return
+    if kind == "block":
+        return block(r, scene)
     axis = r.randrange(3)
     low, high = list(scene["low"]), [l + s for l, s in zip(scene["low"], scene["size"])]
     size = scene["size"]
@@ -141,6 +152,49 @@ def plates(r, scene):
         inwards = r.choice([-1, 1])
         low[axis] = high[axis] = scene["low"][axis] + (0 if inwards > 0 else size[axis])
     scene["plates"] = [{"axis": axis, "inwards": inwards, "low": low, "high": high, "wall": plate}]
+
+
+def block(r, scene):
+    """A closed body among the particles, in the air or on the floor, as six rectangles that face outwards."""
+    low, size = scene["low"], scene["size"]
+    bottom = [l + r.uniform(.2, .4) * s for l, s in zip(low, size)]
+    top = [b + r.uniform(.15, .35) * s for b, s in zip(bottom, size)]
+    if r.random() < 0.5:
+        bottom[2] = low[2]
+    wall = wall_values(r, scene, r.choice(["isothermal", "adiabatic"]))
+    for axis in range(3):
+        for inwards, place in ((-1, bottom[axis]), (1, top[axis])):
+            one = {"axis": axis, "inwards": inwards, "low": list(bottom), "high": list(top), "wall": dict(wall), "solid": True}
+            one["low"][axis] = one["high"][axis] = place
+            scene["plates"].append(one)
+    scene["blocks"] = [(bottom, top)]
+
+
+def region(r, scene):
+    """Heat in a part of the box alone."""
+    low, high = list(scene["low"]), [l + s for l, s in zip(scene["low"], scene["size"])]
+    for k in range(3):
+        if r.random() < 0.5:
+            low[k] += r.uniform(0, .4) * scene["size"][k] * r.choice([0, 1])
+            high[k] -= r.uniform(0, .4) * scene["size"][k] * r.choice([0, 1])
+    scene["region"] = [low, high]
+    if scene["source"] != "none":
+        scene["surroundings_K"] = around(r, scene)
+
+
+def around(r, scene):
+    return scene["particle_K"] if scene["isothermal"] else r.choice([300.0, r.uniform(100, 1500)])
+
+
+def shutter(r, scene):
+    """A wall that is taken away in the middle, at the start or after the end; s as part of the run."""
+    walls = [w for w in list(scene["walls"].values()) + [p["wall"] for p in scene["plates"] if not p.get("solid")]]
+    if not walls or not scene["frozen"]:
+        return
+    wall = r.choice(walls)
+    wall["opens"] = r.choice([0.0, r.uniform(0, 1), r.uniform(0, 1), 2.0])
+    if scene["source"] != "none":
+        scene["surroundings_K"] = scene["surroundings_K"] or around(r, scene)
 
 
 def rectangle(plate):
@@ -207,6 +261,8 @@ def particles(r, scene):
             if place is None:
                 continue
         if not all(far_from(plate, place, radius) for plate in scene["plates"] if plate["wall"].get("two_sided")):
+            continue
+        if not all(far_from({"low": a, "high": b}, place, radius) for a, b in scene.get("blocks", [])):
             continue
         if any(distance(scene, place, p["place"]) < (radius + p["radius"]) * 0.9994 for p in placed):
             continue
@@ -282,12 +338,15 @@ def write(scene, folder):
         table("[[materials]]", extra)
     if scene["gas"] is not None:
         table("[gas]", scene["gas"])
-    if scene["feed"]:
-        table("[particles]", {"diameter_m": scene["diameter"], "temperature_K": scene["particle_K"]})
-        table("[feed]", scene["feed"])
-    else:
-        table("[particles]", {"file": "bed.csv", "temperature_K": scene["particle_K"]})
+    first = {"temperature_K": scene["particle_K"]}
+    if scene["engine"] != "replay" and (scene["particles"] or not scene["feed"]):
+        first["file"] = "bed.csv"
         bed(scene, os.path.join(folder, "bed.csv"))
+    if scene["feed"]:
+        first["diameter_m"] = scene["diameter"]
+    table("[particles]", first)
+    if scene["feed"]:
+        table("[feed]", scene["feed"])
     box = {"size_m": scene["size"], "origin_m": scene["low"]}
     if scene["periodic"]:
         box["periodic"] = scene["periodic"]
@@ -295,14 +354,19 @@ def write(scene, folder):
         box["walls"] = False
     table("[box]", box)
     walls_of(scene, folder, table)
-    for plate in scene["plates"]:
-        table("[[polygon]]", dict(plate["wall"], name="plate", vertices_m=rectangle(plate)))
+    for k, plate in enumerate(scene["plates"]):
+        table("[[polygon]]", dict(properties(scene, plate["wall"]), name="plate%d" % k, vertices_m=rectangle(plate)))
+    if scene["region"]:
+        table("[region]", {"min_m": scene["region"][0], "max_m": scene["region"][1]})
     for where in scene["remove"]:
         table("[[remove]]", where)
     if scene["surroundings_K"]:
         table("[surroundings]", {"temperature_K": scene["surroundings_K"]})
-    table("[dem]", dict(scene["dem"], engine=scene["engine"]))
-    table("[conduction]", scene["conduction"])
+    if scene["engine"] == "replay":
+        table("[dem]", recording(scene, folder))
+    else:
+        table("[dem]", dict(scene["dem"], engine=scene["engine"]))
+    table("[conduction]", dict(scene["conduction"], **({"every_steps": scene["every_steps"]} if scene["every_steps"] else {})))
     if scene["source"] != "none":
         radiation = {"source": scene["source"], "every_s": scene["radiation_every"], "seed": scene["ray_seed"]}
         if scene["source"] == "correlation":
@@ -324,15 +388,48 @@ def bed(scene, path):
             out.write(",".join(repr(float(v)) for v in p["place"] + [p["radius"], p["T"]] + p["v"]) + ",%d\n" % p["material"])
 
 
+def recording(scene, folder):
+    """The bed that rests as a recorded flow of two snapshots; particles in another order in each."""
+    end = scene["every"] * scene["rows"]
+    faces = ["pp" if axis in scene["periodic"] else "ff" for axis in "xyz"]
+    rows = ["%d %d %s" % (k + 1, p["material"] + 1, " ".join(repr(float(v)) for v in p["place"] + [p["radius"], p["T"]]))
+            for k, p in enumerate(scene["particles"])]
+    for step in (0, 1000):
+        with open(os.path.join(folder, "flow.%d.dump" % step), "w") as out:
+            out.write("ITEM: TIMESTEP\n%d\nITEM: NUMBER OF ATOMS\n%d\nITEM: BOX BOUNDS %s\n" % (step, len(rows), " ".join(faces)))
+            for low, size in zip(scene["low"], scene["size"]):
+                out.write("%r %r\n" % (low, low + size))
+            out.write("ITEM: ATOMS id type x y z radius temp\n" + "\n".join(rows) + "\n")
+        rows.reverse()
+    return {"engine": "replay", "files": "flow.*.dump", "step_s": end / 1000}
+
+
+def properties(scene, wall):
+    """Keys of a wall; its shutter in seconds."""
+    keys = {k: v for k, v in wall.items() if k != "opens"}
+    if "opens" in wall:
+        keys["opens_at_s"] = wall["opens"] * scene["every"] * scene["rows"]
+    return keys
+
+
+def facets(out, name, triangles):
+    out.write("solid %s\n" % name)
+    for t in triangles:
+        out.write("facet normal 0 0 0\nouter loop\n" + "".join("vertex %r %r %r\n" % tuple(p) for p in t) +
+                  "endloop\nendfacet\n")
+    out.write("endsolid %s\n" % name)
+
+
 def walls_of(scene, folder, table):
     high = [l + s for l, s in zip(scene["low"], scene["size"])]
     order = list(scene["walls"])
     if scene.get("reordered"):
         order.reverse()
+    order = [face for face in order if not (scene["drop_open"] and scene["walls"][face]["role"] == "open")]
+    if scene["wall_style"] == "solids":
+        return solids(scene, folder, table, order, high)
     for face in order:
-        wall = scene["walls"][face]
-        if scene["surroundings_K"] and wall["role"] == "open":
-            continue
+        wall = properties(scene, scene["walls"][face])
         if scene["wall_style"] == "box":
             table("[walls.%s]" % face, wall)
         elif scene["wall_style"] == "polygons":
@@ -346,12 +443,19 @@ def walls_of(scene, folder, table):
             name = face + ".stl"
             a, b, c, e = corners(scene["low"], high, face)
             with open(os.path.join(folder, name), "w") as out:
-                out.write("solid %s\n" % face)
-                for t in ((a, b, c), (a, c, e)):
-                    out.write("facet normal 0 0 0\nouter loop\n" + "".join("vertex %r %r %r\n" % tuple(p) for p in t) +
-                              "endloop\nendfacet\n")
-                out.write("endsolid %s\n" % face)
+                facets(out, face, ((a, b, c), (a, c, e)))
             table("[[mesh]]", dict(wall, name=face, file=name))
+
+
+def solids(scene, folder, table, order, high):
+    """All faces as solids of one file, each with its own role."""
+    with open(os.path.join(folder, "vessel.stl"), "w") as out:
+        for face in order:
+            a, b, c, e = corners(scene["low"], high, face)
+            facets(out, face, ((a, b, c), (a, c, e)))
+    table("[[mesh]]", {"name": "vessel", "file": "vessel.stl", "role": "adiabatic"})
+    for face in order:
+        table('[mesh.solid."%s"]' % face, properties(scene, scene["walls"][face]))
 
 
 def changed(scene, **values):

@@ -41,7 +41,7 @@ class ImportFormats : public testing::Test {
 
 TEST_F(ImportFormats, NamesThatDifferInWritingAreTheSameQuantity) {
   for (const char* name : {"Temperature", "temp", "TEMP", "T", "t", "f_Temp", "f_Temp[0]", "f_Temp[1]",
-                           "temperature_K", "T_K", "Temp (K)", "c_temp[3]", "v_Temp"}) {
+                           "temperature_K", "T_K", "Temp (K)", "c_temp[3]", "v_Temp", "v_T", "f_T"}) {
     const Snapshot one = read(std::string("x,y,z,radius,") + name + "\n0,0,0,1,500\n");
     EXPECT_TRUE(one.has_temperature) << name;
     EXPECT_EQ(one.bed.temperature_K[0], 500) << name;
@@ -63,6 +63,8 @@ TEST_F(ImportFormats, NamesThatAreNearlyOursAreMetWithASuggestion) {
   expect_says(refusal("x,y,z,radius,temprature\n0,0,0,1,500\n"),
               ":1: column temprature is not known; did you mean temperature?");
   expect_says(refusal("x,y,z,radius,temperature_C\n0,0,0,1,25\n"), "did you mean temperature?");
+  for (const char* name : {"T_C", "T (C)", "T [degC]", "Tp", "T_particle"})
+    expect_says(refusal(std::string("x,y,z,radius,") + name + "\n0,0,0,1,25\n"), "did you mean temperature?");
   expect_says(refusal("x,y,z,radius_mm\n0,0,0,0.4\n", 4e-4), "did you mean radius?");
   expect_says(refusal("x,y,z,Radus\n0,0,0,0.4\n", 4e-4), "did you mean radius?");
   expect_says(refusal("x,y,z,radius,f_Temp[1],f_Temp[2]\n0,0,0,1,300,400\n"),

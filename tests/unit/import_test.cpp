@@ -215,6 +215,16 @@ TEST_F(Import, BinaryStlIsRead) {
   const auto walls = import_stl(write(bytes, "binary.stl"), 1, "wall");
   ASSERT_EQ(walls.size(), 1u);
   EXPECT_DOUBLE_EQ(area(walls[0]), 1);
+  bytes.replace(0, 12, "solid by CAD");
+  EXPECT_DOUBLE_EQ(area(import_stl(write(bytes + std::string(30, '\0'), "more.stl"), 1, "wall")[0]), 1)
+      << "what follows the last triangle is no triangle";
+  try {
+    import_stl(write(bytes.substr(0, 100), "cut.stl"), 1, "wall");
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("cut short: 0 of 1 triangles"), std::string::npos)
+        << error.what();
+  }
 }
 
 TEST_F(Import, BadStlIsRefused) {

@@ -20,7 +20,9 @@ void write_text_file(const std::filesystem::path& file, const std::string& text)
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), failure);
   const auto temporary = file.string() + fmt::format(".tmp{}", getpid());
   std::FILE* stream = std::fopen(temporary.c_str(), "w");
-  if (!stream) throw IoError(fmt::format("{}: cannot write ({})", file.string(), std::strerror(errno)));
+  if (!stream)
+    throw IoError(fmt::format("{}: cannot write ({})", file.string(),
+                              failure ? failure.message() : std::strerror(errno)));
   const bool written = std::fwrite(text.data(), 1, text.size(), stream) == text.size();
   const int write_errno = errno;
   const bool closed = std::fclose(stream) == 0;
