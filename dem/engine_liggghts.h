@@ -17,11 +17,14 @@ namespace granrad {
 /// the step once contacts dissipate; standing walls as triangle meshes (`mesh/surface`); gravity, periodic
 /// boundaries, spheres of any radii and materials.
 ///
-/// Under mpirun (dem/ranks) all ranks move the spheres together: each takes those in its part of the domain and gives all
-/// ranks what became of them. Results on different numbers of ranks differ by the order of sums.
+/// Under mpirun (dem/ranks) all ranks move the spheres together: each takes those in its part of the domain and tells all
+/// ranks what became of them and of their springs. Parts are cut at each advance so that each holds about as many spheres
+/// (dem/liggghts/parts.h). Results on different numbers of ranks differ by the order of sums.
 ///
-/// A function of the Bed: each advance hands every sphere and spring over anew in the order of the ids and
-/// takes them back, so feeds may change the Bed at will. A resumed run continues bit for bit where it is cut
+/// A function of the Bed: each advance makes a rank's spheres and springs anew from the Bed in the order of the ids, so
+/// feeds may change the Bed at will, parts may move, and nothing is left of how spheres came to their ranks. That takes a
+/// rank the time of two DEM steps of its own spheres beside the three steps of LIGGGHTS' own set-up, and half a step of
+/// all spheres for what the ranks tell each other. A resumed run continues bit for bit where it is cut
 /// as the first was, as granrun does. Cut elsewhere it differs by as much as the step's error: LIGGGHTS
 /// starts from forces at whole-step velocities, where inside a run it uses those of half a step before.
 ///

@@ -19,6 +19,10 @@ class Flow {
   void advance(Bed& bed, const TimePlan& plan, std::int64_t tick);
   /// Pairs within the gap, from the engine's own list; found once in a frozen bed.
   const NearPairs& near_pairs(const Bed& bed, double max_gap_m);
+  /// Whether near_pairs of a moving bed searches anew each time: ranks may share that.
+  bool searches_pairs() const {
+    return scene_.engine == EngineKind::liggghts || scene_.engine == EngineKind::replay;
+  }
   /// Has the engine record what touches, for `touches`; before the first advance.
   void record_touches(bool wanted) { records_touches_ = wanted; }
   /// How bodies touched since the last tick; nothing in a frozen bed, and from an engine that does not say.

@@ -12,6 +12,7 @@
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
 #include "dem/io/saved_state.h"
+#include "dem/ranks/ranks.h"
 
 namespace granrad {
 
@@ -43,6 +44,17 @@ bool is_isothermal(const RadiativeState& state) {
   return true;
 }
 
+/// What the ranks found of their parts of the pairs, in the order of one process: the same on every rank, so that a pair's
+/// heat is one number there too.
+Conductances joined(const Conductances& own, std::size_t particles) {
+  Conductances all{
+      sorted_by_rows(std::vector<std::vector<PairConductance>>{joined_over_ranks(own.particles)}, particles),
+      joined_over_ranks(own.walls)};
+  std::stable_sort(all.walls.begin(), all.walls.end(),
+                   [](const WallConductance& a, const WallConductance& b) { return a.i < b.i; });
+  return all;
+}
+
 /// Where nothing says it, the walls close (check_radiation saw to it) and no ray asks.
 double surroundings_K(const Case& c) {
   return known_surroundings_K(c.flow, c.heat.surroundings_K).value_or(c.flow.particle_temperature_K);
@@ -57,11 +69,16 @@ const Conductances& HeatModel::conduct(const Bed& bed, Flow& flow) {
   if (!settings.solid && !settings.gas) return conductances_;
   if (!flow.moves() && bed.time_s < conductances_until_s_) return conductances_;
   const double largest = bed.size() ? *std::max_element(bed.radius_m.begin(), bed.radius_m.end()) : 0;
+  const double gap_m = lens_cutoff_gap_m(settings, largest);
+  const auto inside = in_region(bed, case_.flow.region);
   const auto touches = settings.solid && !settings.rough ? flow.touches(bed) : std::nullopt;
   const bool needs_pairs = !touches || settings.gas;
-  conductances_ = conductances(
-      bed, needs_pairs ? flow.near_pairs(bed, lens_cutoff_gap_m(settings, largest)) : NearPairs{}, settings,
-      in_region(bed, case_.flow.region), touches ? &*touches : nullptr);
+  if (rank_count() > 1 && !touches && flow.searches_pairs())
+    conductances_ =
+        joined(conductances(bed, near_pairs(bed, gap_m, rank(), rank_count()), settings, inside), bed.size());
+  else
+    conductances_ = conductances(bed, needs_pairs ? flow.near_pairs(bed, gap_m) : NearPairs{}, settings,
+                                 inside, touches ? &*touches : nullptr);
   conductances_until_s_ = next_opening_s(bed.walls, bed.time_s);
   return conductances_;
 }

@@ -91,11 +91,24 @@ class ParticleSearch {
   bool periodic_;
 };
 
+/// This part of the particles: of each class a run in the order of its cells, so that what is near in space is near in time.
+std::vector<std::int32_t> members_of_part(const std::vector<SizeClass>& classes, std::size_t part,
+                                          std::size_t parts) {
+  std::vector<std::int32_t> members;
+  for (const auto& c : classes) {
+    const auto& all = c.grid.members();
+    const auto at = [&](std::size_t k) {
+      return all.begin() + static_cast<std::ptrdiff_t>(all.size() * k / parts);
+    };
+    members.insert(members.end(), at(part), at(part + 1));
+  }
+  return members;
+}
+
 std::vector<NearPair> find_particles(const Bed& bed, const std::vector<Vec3>& points,
-                                     const std::vector<SizeClass>& classes, double gap) {
+                                     const std::vector<SizeClass>& classes,
+                                     const std::vector<std::int32_t>& order, double gap) {
   const ParticleSearch search(bed, points, classes, gap);
-  std::vector<std::int32_t> order;  // near in space, near in time
-  for (const auto& c : classes) order.insert(order.end(), c.grid.members().begin(), c.grid.members().end());
   std::vector<std::vector<NearPair>> parts(omp_get_max_threads());
 #pragma omp parallel for schedule(static)
   for (std::size_t k = 0; k < order.size(); ++k) search.find(order[k], parts[omp_get_thread_num()]);
@@ -125,9 +138,10 @@ struct Meeting {
   }
 };
 
+/// Of the particles with wanted[i] != 0 (empty: all).
 std::vector<Meeting> find_meetings(const WallSurface& surface, const Bed& bed,
-                                   const std::vector<SizeClass>& classes, const std::vector<Vec3>& shifts,
-                                   double gap) {
+                                   const std::vector<SizeClass>& classes, const std::vector<char>& wanted,
+                                   const std::vector<Vec3>& shifts, double gap) {
   std::vector<Meeting> found;
   for (std::int32_t f = 0; f < surface.facet_count(); ++f) {
     if (!surface.stands(f)) continue;
@@ -138,6 +152,7 @@ std::vector<Meeting> find_meetings(const WallSurface& surface, const Bed& bed,
         const Vec3 margin{reach, reach, reach};
         c.grid.visit_box({bounds.min - shifts[s] - margin, bounds.max - shifts[s] + margin},
                          [&](std::int32_t i, const Vec3& at) {
+                           if (!wanted.empty() && !wanted[i]) return;
                            const double most = bed.radius_m[i] + gap;
                            const Vec3 p = at + shifts[s];
                            if (std::abs(surface.height(f, p)) < most && surface.distance(f, p) < most)
@@ -186,23 +201,6 @@ class TouchesOfOne {
 
 }  // namespace
 
-/// Counting by i, then each row.
-std::vector<NearPair> sorted_by_rows(const std::vector<std::vector<NearPair>>& parts, std::size_t particles) {
-  std::vector<std::size_t> begin(particles + 1, 0);
-  for (const auto& part : parts)
-    for (const auto& pair : part) ++begin[pair.i + 1];
-  for (std::size_t i = 0; i < particles; ++i) begin[i + 1] += begin[i];
-  std::vector<NearPair> sorted(begin[particles]);
-  std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
-  for (const auto& part : parts)
-    for (const auto& pair : part) sorted[next[pair.i]++] = pair;
-#pragma omp parallel for schedule(static)
-  for (std::size_t i = 0; i < particles; ++i)
-    std::sort(sorted.begin() + begin[i], sorted.begin() + begin[i + 1],
-              [](const NearPair& a, const NearPair& b) { return a.j < b.j; });
-  return sorted;
-}
-
 void sort_by_rows(std::vector<NearWall>& walls) {
   std::sort(walls.begin(), walls.end(), [](const NearWall& a, const NearWall& b) {
     return std::tie(a.i, a.wall, a.distance_m) < std::tie(b.i, b.wall, b.distance_m);
@@ -220,10 +218,10 @@ void append_near_walls(const WallSurface& surface, std::int32_t i, const Vec3& p
 namespace {
 
 std::vector<NearWall> find_walls(const Bed& bed, const std::vector<Vec3>& points,
-                                 const std::vector<SizeClass>& classes, const WallSurface& surface,
-                                 double gap) {
+                                 const std::vector<SizeClass>& classes, const std::vector<char>& wanted,
+                                 const WallSurface& surface, double gap) {
   const auto shifts = image_shifts(bed);
-  const auto meetings = find_meetings(surface, bed, classes, shifts, gap);
+  const auto meetings = find_meetings(surface, bed, classes, wanted, shifts, gap);
   std::vector<NearWall> found;
   std::vector<std::int32_t> facets;
   for (std::size_t k = 0; k < meetings.size();) {
@@ -244,18 +242,22 @@ std::vector<NearWall> find_walls(const Bed& bed, const std::vector<Vec3>& points
 
 }  // namespace
 
-NearPairs near_pairs(const Bed& bed, double max_gap_m) {
+NearPairs near_pairs(const Bed& bed, double max_gap_m, int part, int parts) {
   const std::vector<Vec3> points = wrapped_positions(bed);
   const std::vector<SizeClass> classes = size_classes(bed, points, max_gap_m);
+  const auto mine = members_of_part(classes, static_cast<std::size_t>(part), static_cast<std::size_t>(parts));
+  std::vector<char> wanted(parts > 1 ? bed.size() : 0, 0);
+  if (parts > 1)
+    for (const auto i : mine) wanted[i] = 1;
   WallSurface surface(bed.walls);
   surface.set_time(bed.walls, bed.time_s);
-  return {find_particles(bed, points, classes, max_gap_m),
-          find_walls(bed, points, classes, surface, max_gap_m)};
+  return {find_particles(bed, points, classes, mine, max_gap_m),
+          find_walls(bed, points, classes, wanted, surface, max_gap_m)};
 }
 
 std::vector<NearWall> near_walls(const Bed& bed, const WallSurface& surface, double max_gap_m) {
   const std::vector<Vec3> points = wrapped_positions(bed);
-  return find_walls(bed, points, size_classes(bed, points, max_gap_m), surface, max_gap_m);
+  return find_walls(bed, points, size_classes(bed, points, max_gap_m), {}, surface, max_gap_m);
 }
 
 }  // namespace granrad

@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -32,7 +34,10 @@ struct NearPairs {
 
 /// All pairs with surface gap (distance - r_i - r_j, or distance - r_i) <= max_gap_m, by a cell list.
 /// Walls without contact and shutters that are open at bed.time_s are left out. Cost O(N) for similar radii.
-NearPairs near_pairs(const Bed& bed, double max_gap_m);
+///
+/// Of several parts, what this one finds: each pair is found by one of them, all walls of a particle by the same; parts are
+/// regions of the bed with as many particles each.
+NearPairs near_pairs(const Bed& bed, double max_gap_m, int part = 0, int parts = 1);
 
 /// Its walls alone; `surface` is that of the bed's walls, at its time.
 std::vector<NearWall> near_walls(const Bed& bed, const WallSurface& surface, double max_gap_m);
@@ -42,8 +47,24 @@ void append_near_walls(const WallSurface& surface, std::int32_t i, const Vec3& p
                        double max_gap_m, const std::int32_t* begin, const std::int32_t* end,
                        std::vector<NearWall>& out);
 
-/// Pairs found in any order by several searchers, sorted by (i, j); `particles` is how many there are.
-std::vector<NearPair> sorted_by_rows(const std::vector<std::vector<NearPair>>& parts, std::size_t particles);
+/// Pairs (anything with i and j) found in any order by several searchers, sorted by (i, j); `particles` is how many there
+/// are. Counting by i, then each row.
+template <class Pair>
+std::vector<Pair> sorted_by_rows(const std::vector<std::vector<Pair>>& parts, std::size_t particles) {
+  std::vector<std::size_t> begin(particles + 1, 0);
+  for (const auto& part : parts)
+    for (const auto& pair : part) ++begin[pair.i + 1];
+  for (std::size_t i = 0; i < particles; ++i) begin[i + 1] += begin[i];
+  std::vector<Pair> sorted(begin[particles]);
+  std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
+  for (const auto& part : parts)
+    for (const auto& pair : part) sorted[next[pair.i]++] = pair;
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < particles; ++i)
+    std::sort(sorted.begin() + begin[i], sorted.begin() + begin[i + 1],
+              [](const Pair& a, const Pair& b) { return a.j < b.j; });
+  return sorted;
+}
 
 /// Sorts by (i, wall, distance).
 void sort_by_rows(std::vector<NearWall>& walls);

@@ -42,13 +42,23 @@ Box extent(const Bed& bed, const WallMeshes& walls, double radius) {
   return box;
 }
 
-void add_domain(const Bed& bed, const WallMeshes& walls, std::vector<std::string>& commands,
-                std::size_t types) {
+std::vector<Vec3> places_in_box(const Bed& bed) {
+  std::vector<Vec3> places = bed.position_m;
+  for (Vec3& p : places) p = wrapped_into_box(bed, p);
+  return places;
+}
+
+void add_domain(const Bed& bed, const WallMeshes& walls, int ranks, std::size_t types, Deck& deck) {
   const double radius = *std::max_element(bed.radius_m.begin(), bed.radius_m.end());
   const Box box = extent(bed, walls, radius);
   const auto style = [&](int a) { return bed.periodic[a] ? "p" : "m"; };
-  commands.insert(
-      commands.end(),
+  if (ranks > 1) {
+    deck.parts = parts_of(box, places_in_box(bed), ranks);
+    const auto& [x, y, z] = deck.parts.count;
+    deck.before_meshes.push_back(fmt::format("processors {} {} {}", x, y, z));
+  }
+  deck.before_meshes.insert(
+      deck.before_meshes.end(),
       {"units si", "atom_style granular", "atom_modify map array",
        fmt::format("boundary {} {} {}", style(0), style(1), style(2)), "newton off",
        "communicate single vel yes", "soft_particles yes", "hard_particles yes",
@@ -103,11 +113,11 @@ std::string mesh_name(std::size_t number) {
   return fmt::format("mesh{}", number);
 }
 
-Deck make_deck(const Bed& bed, const WallMeshes& walls, const Vec3& gravity_m_s2, double step_s) {
+Deck make_deck(const Bed& bed, const WallMeshes& walls, const Vec3& gravity_m_s2, double step_s, int ranks) {
   Deck deck;
   deck.meshes = walls.meshes();
   const auto types = number_types(bed, deck);
-  add_domain(bed, walls, deck.before_meshes, types.size());
+  add_domain(bed, walls, ranks, types.size(), deck);
   const auto model = add_model(types, deck.before_meshes);
   deck.before_meshes.push_back(fmt::format("timestep {:.17g}", step_s));
   if (const double g = norm(gravity_m_s2); g > 0)

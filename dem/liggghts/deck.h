@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "dem/bed/bed.h"
+#include "dem/liggghts/parts.h"
 #include "dem/liggghts/wall_meshes.h"
 
 namespace granrad::liggghts {
@@ -15,6 +16,7 @@ struct Deck {
   std::vector<std::string> before_meshes, after_meshes;  ///< commands
   std::vector<WallMesh> meshes;
   std::int32_t mesh_type = 1;
+  Parts parts;  ///< of the ranks
 
   bool operator==(const Deck&) const = default;
 };
@@ -22,9 +24,9 @@ struct Deck {
 /// The name of a mesh in the commands.
 std::string mesh_name(std::size_t number);
 
-/// The deck of this Bed with the walls that stand. A wall is of each particle's own material (dem/native/
+/// The deck of this Bed with the walls that stand, for so many ranks. A wall is of each particle's own material (dem/native/
 /// materials.h), which LIGGGHTS can do for restitution and friction only.
 /// Precondition: where there are walls all materials have one Young's modulus and one Poisson ratio.
-Deck make_deck(const Bed& bed, const WallMeshes& walls, const Vec3& gravity_m_s2, double step_s);
+Deck make_deck(const Bed& bed, const WallMeshes& walls, const Vec3& gravity_m_s2, double step_s, int ranks);
 
 }  // namespace granrad::liggghts

@@ -7,6 +7,7 @@
 #include "dem/liggghts/deck.h"
 #include "dem/liggghts/plugin.h"
 #include "dem/liggghts/session.h"
+#include "dem/liggghts/world.h"
 #include "dem/step_clock.h"
 
 namespace granrad {
@@ -31,6 +32,29 @@ Vec3 periods_outside(const Bed& bed, const Vec3& p) {
   return shift;
 }
 
+/// Bed::index_of in one look: ids of a bed lie close together.
+class IndexOfId {
+ public:
+  explicit IndexOfId(const Bed& bed) : bed_(bed), first_(bed.id.front()) {
+    const std::int64_t span = bed.id.back() - first_ + 1;
+    if (span > most_per_sphere * static_cast<std::int64_t>(bed.size())) return;
+    index_.assign(static_cast<std::size_t>(span), -1);
+    for (std::size_t i = 0; i < bed.size(); ++i)
+      index_[static_cast<std::size_t>(bed.id[i] - first_)] = static_cast<std::int32_t>(i);
+  }
+  std::int32_t operator()(std::int64_t id) const {
+    if (index_.empty()) return static_cast<std::int32_t>(bed_.index_of(id));
+    const auto k = static_cast<std::uint64_t>(id - first_);  // below the first: beyond the end
+    return k < index_.size() ? index_[k] : -1;
+  }
+
+ private:
+  static constexpr std::int64_t most_per_sphere = 16;
+  const Bed& bed_;
+  std::int64_t first_;
+  std::vector<std::int32_t> index_;
+};
+
 class LiggghtsEngine final : public Engine {
  public:
   LiggghtsEngine(const Vec3& gravity_m_s2, double step_s) : gravity_(gravity_m_s2), step_s_(step_s) {
@@ -45,6 +69,7 @@ class LiggghtsEngine final : public Engine {
   void run(Bed& bed, std::int64_t steps);
   void fit_session(Deck deck);
   Spheres spheres_of(const Bed& bed, const WallMeshes& walls) const;
+  void store_springs(const Spheres& spheres, const WallMeshes& walls, Bed& bed) const;
   void store(const Spheres& spheres, const WallMeshes& walls, Bed& bed) const;
 
   Vec3 gravity_;
@@ -59,6 +84,7 @@ void LiggghtsEngine::fit_session(Deck deck) {
   session_.reset();
   auto session = std::make_unique<Session>();
   for (const auto& line : deck.before_meshes) session->command(line);
+  if (deck.parts != Parts{}) session->cut(deck.parts);
   for (std::size_t m = 0; m < deck.meshes.size(); ++m)
     session->add_mesh(mesh_name(m), deck.meshes[m], deck.mesh_type);
   for (const auto& line : deck.after_meshes) session->command(line);
@@ -68,6 +94,7 @@ void LiggghtsEngine::fit_session(Deck deck) {
 
 Spheres LiggghtsEngine::spheres_of(const Bed& bed, const WallMeshes& walls) const {
   Spheres s;
+  s.position_m.reserve(bed.size());
   for (const auto& p : bed.position_m) s.position_m.push_back(p - periods_outside(bed, p));
   s.velocity_m_s = bed.velocity_m_s;
   s.angular_velocity_rad_s = bed.angular_velocity_rad_s, s.radius_m = bed.radius_m;
@@ -75,19 +102,44 @@ Spheres LiggghtsEngine::spheres_of(const Bed& bed, const WallMeshes& walls) cons
     s.type.push_back(deck_.type_of_material[m]);
     s.density_kg_m3.push_back(bed.materials[m].density_kg_m3);
   }
-  s.wall_springs.resize(deck_.meshes.size());
+  s.springs.reserve(bed.contacts.size());
+  const IndexOfId index_of(bed);
   for (const auto& c : bed.contacts) {
-    const auto first = static_cast<std::int32_t>(bed.index_of(c.first));
+    const std::int32_t first = index_of(c.first);
     if (first < 0) continue;
     if (c.second >= 0) {
-      const auto second = static_cast<std::int32_t>(bed.index_of(c.second));
-      if (second >= 0) s.pair_springs.push_back({first, second, c.displacement_m});
+      const std::int32_t second = index_of(c.second);
+      if (second >= 0) s.springs.push_back({first, Spring::pair, second, c.displacement_m});
       continue;
     }
     const auto place = walls.nearest(-1 - c.second, s.position_m[first]);
-    if (place.triangle >= 0) s.wall_springs[place.mesh].push_back({first, place.triangle, c.displacement_m});
+    if (place.triangle >= 0)
+      s.springs.push_back({first, static_cast<std::int32_t>(place.mesh), place.triangle, c.displacement_m});
   }
   return s;
+}
+
+/// One spring for a sphere and a face: its triangles share an edge, LIGGGHTS lets one of them act.
+void LiggghtsEngine::store_springs(const Spheres& s, const WallMeshes& walls, Bed& bed) const {
+  bed.contacts.clear();
+  bed.contacts.reserve(s.springs.size());
+  for (std::size_t k = 0; k < s.springs.size();) {
+    const auto sphere = s.springs[k].sphere;
+    const auto first = static_cast<std::ptrdiff_t>(bed.contacts.size());
+    for (; k < s.springs.size() && s.springs[k].sphere == sphere && s.springs[k].mesh != Spring::pair; ++k) {
+      const auto face = walls.face_of(static_cast<std::size_t>(s.springs[k].mesh), s.springs[k].partner);
+      bed.contacts.push_back({bed.id[sphere], -1 - face, s.springs[k].displacement_m});
+    }
+    const auto begin = bed.contacts.begin() + first;
+    std::stable_sort(begin, bed.contacts.end(),
+                     [](const ContactMemory& a, const ContactMemory& b) { return a.second < b.second; });
+    bed.contacts.erase(
+        std::unique(begin, bed.contacts.end(),
+                    [](const ContactMemory& a, const ContactMemory& b) { return a.second == b.second; }),
+        bed.contacts.end());
+    for (; k < s.springs.size() && s.springs[k].sphere == sphere; ++k)
+      bed.contacts.push_back({bed.id[sphere], bed.id[s.springs[k].partner], s.springs[k].displacement_m});
+  }
 }
 
 void LiggghtsEngine::store(const Spheres& s, const WallMeshes& walls, Bed& bed) const {
@@ -95,26 +147,13 @@ void LiggghtsEngine::store(const Spheres& s, const WallMeshes& walls, Bed& bed) 
     bed.position_m[i] = s.position_m[i] + periods_outside(bed, bed.position_m[i]);
   bed.velocity_m_s = s.velocity_m_s;
   bed.angular_velocity_rad_s = s.angular_velocity_rad_s;
-  bed.contacts.clear();
-  for (const auto& p : s.pair_springs)
-    bed.contacts.push_back({bed.id[p.sphere], bed.id[p.partner], p.displacement_m});
-  for (std::size_t m = 0; m < s.wall_springs.size(); ++m)
-    for (const auto& p : s.wall_springs[m])
-      bed.contacts.push_back({bed.id[p.sphere], -1 - walls.face_of(m, p.partner), p.displacement_m});
-  // One spring for a sphere and a face: its triangles share an edge, LIGGGHTS lets one of them act.
-  const auto key = [](const ContactMemory& c) { return std::pair(c.first, c.second); };
-  std::stable_sort(bed.contacts.begin(), bed.contacts.end(),
-                   [&](const ContactMemory& a, const ContactMemory& b) { return key(a) < key(b); });
-  bed.contacts.erase(
-      std::unique(bed.contacts.begin(), bed.contacts.end(),
-                  [&](const ContactMemory& a, const ContactMemory& b) { return key(a) == key(b); }),
-      bed.contacts.end());
+  store_springs(s, walls, bed);
 }
 
 void LiggghtsEngine::run(Bed& bed, std::int64_t steps) {
   if (bed.size() == 0) return;
   const WallMeshes walls(bed);
-  fit_session(make_deck(bed, walls, gravity_, step_s_));
+  fit_session(make_deck(bed, walls, gravity_, step_s_, World::started().count()));
   Spheres spheres = spheres_of(bed, walls);
   check_finite(spheres, bed);
   session_->run(spheres, steps);

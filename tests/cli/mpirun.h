@@ -1,4 +1,9 @@
 #pragma once
+#include <signal.h>
+
+#include <chrono>
+#include <thread>
+
 #include "dem/base/plugin.h"
 #include "granrun.h"
 
@@ -31,6 +36,39 @@ inline Outcome run_on_ranks(const Scratch& scratch, int ranks, const std::string
   result.out = content(out);
   result.err = content(err);
   return result;
+}
+
+/// Process numbers of the ranks that write to this folder.
+inline std::vector<pid_t> ranks_on(const fs::path& folder) {
+  std::vector<pid_t> found;
+  for (const auto& entry : fs::directory_iterator("/proc")) {
+    const std::string name = entry.path().filename();
+    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+    const std::string line = content(entry.path() / "cmdline");
+    if (line.find("/granrun") < line.find('\0') && line.find(folder.string()) != std::string::npos)
+      found.push_back(std::stoi(name));
+  }
+  return found;
+}
+
+/// Starts an endless run on ranks, signals one of them after the first frame; the launcher's exit code.
+inline int stopped_by(const Scratch& scratch, const fs::path& scene, const fs::path& folder, int signal,
+                      int ranks = 3, const std::string& more = "") {
+  set_mpi_for_tests();
+  const std::string command = "mpirun -n " + std::to_string(ranks) + " " GRANRAD_BIN_DIR "/granrun run " +
+                              scene.string() + " -q --threads 1 --set scene.end_time_s=100 -o " +
+                              folder.string() + more + " >" + (scratch.root / "stopped.txt").string() +
+                              " 2>&1 </dev/null";
+  std::thread stopper([&] {
+    for (int wait = 0; wait < 1500 && !fs::exists(folder / "frames" / "f_000000800.hdf"); ++wait)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    const auto found = ranks_on(folder);
+    EXPECT_EQ(found.size(), static_cast<std::size_t>(ranks));
+    if (!found.empty()) kill(found.back(), signal);
+  });
+  const int code = exit_code(std::system(command.c_str()));
+  stopper.join();
+  return code;
 }
 
 /// How often a text stands in another.

@@ -1,7 +1,8 @@
 // Requirement: the flow on LIGGGHTS runs on several ranks: spheres that meet across the ranks' parts of the domain move as
 // on one rank but for the order of sums, springs between parts survive the hand-over at every heat step, ranks without
 // spheres do no harm, the books close, and a case goes on with another number of ranks.
-// Planted: springs handed to the rank of one of the two spheres only (ABedMovesAsOnOneRankLong).
+// Planted: springs handed to the rank of one of the two spheres only, springs of ranks joined without looking whose they
+// are (ABedMovesAsOnOneRankLong).
 #include <cmath>
 
 #include "coupling/simulation/history.h"
@@ -22,7 +23,7 @@ class RanksLiggghts : public ::testing::Test {
   }
 
   /// small_plug without its feed, started from a file, under gravity.
-  std::string scene_of(const std::string& rows) {
+  std::string scene_of(const std::string& rows, const std::string& size = "") {
     scratch.write("bed.csv", "x,y,z,radius,temperature,vx,vy,vz,omegax,omegay,omegaz\n" + rows);
     std::string text = small_plug;
     const auto feed = text.find("[feed]");
@@ -30,6 +31,7 @@ class RanksLiggghts : public ::testing::Test {
     text = edited(text, "diameter_m = \"0.8 mm\"\ntemperature_K = 300", "file = \"bed.csv\"");
     text = edited(text, "end_time_s = 0.04", "end_time_s = 0.002\ngravity_m_s2 = [0, 0, -9.81]");
     text = edited(text, "every_s = 0.004", "every_s = 0.001");
+    if (!size.empty()) text = edited(text, "[0.004, 0.003, 0.006]", size);
     return scratch.write("bed.toml", text).string();
   }
   std::string line(const std::string& scene, const fs::path& folder, const std::string& more = "") {
@@ -69,7 +71,7 @@ TEST_F(RanksLiggghts, TwoSpheresMeetAcrossParts) {
       "0.0022,0.0015,0.00366,4e-4,310,-0.1,0.02,-0.1,5,0,0\n");
   const auto alone = scratch.root / "alone";
   ASSERT_EQ(granrun(scratch, line(scene, alone)).code, 0);
-  for (const int r : {3}) {
+  for (const int r : {2, 3}) {
     const auto shared = scratch.root / ("ranks" + std::to_string(r));
     const auto outcome = run_on_ranks(scratch, r, "granrun", line(scene, shared));
     ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -97,6 +99,55 @@ TEST_F(RanksLiggghts, ABedGoesOnWithAnotherNumberOfRanksLong) {
             0);
   ASSERT_EQ(run_on_ranks(scratch, 3, "granrun", line(scene, resumed, " --resume")).code, 0);
   expect_near(alone, resumed, 1e-9, 1e-8);
+}
+
+// The spheres fill a sixteenth of the box: cut in equal parts, three of four ranks would have none.
+TEST_F(RanksLiggghts, AnUnevenBedMovesAsOnOneRankLong) {
+  const auto scene = scene_of(packed_rows(), "[0.016, 0.006, 0.014]");
+  const auto alone = scratch.root / "alone", shared = scratch.root / "shared";
+  ASSERT_EQ(granrun(scratch, line(scene, alone)).code, 0);
+  ASSERT_EQ(run_on_ranks(scratch, 4, "granrun", line(scene, shared)).code, 0);
+  expect_near(alone, shared, 1e-9, 1e-8);
+}
+
+// The feed brings the same spheres; collisions part their ways, and the heat and flow of all agree.
+TEST_F(RanksLiggghts, APlugFlowsAndHeatsAlikeLong) {
+  const auto scene = scratch.write("plug.toml", small_plug).string();
+  const auto alone = scratch.root / "alone";
+  ASSERT_EQ(granrun(scratch, line(scene, alone)).code, 0);
+  const History one = read_history(alone / "history.csv");
+  for (const int r : {2, 4}) {
+    SCOPED_TRACE(r);
+    const auto shared = scratch.root / ("ranks" + std::to_string(r));
+    const auto outcome = run_on_ranks(scratch, r, "granrun", line(scene, shared));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const History many = read_history(shared / "history.csv");
+    EXPECT_EQ(many.at("mass_flow_in_kg_s"), one.at("mass_flow_in_kg_s"));
+    for (const double defect : many.at("energy_defect")) EXPECT_LE(defect, 1e-9);
+    const double spheres = one.at("particle_count").back();
+    EXPECT_NEAR(many.at("solid_fraction").back(), one.at("solid_fraction").back(),
+                2 * one.at("solid_fraction").back() / std::sqrt(spheres));
+    EXPECT_NEAR((many.at("mean_temperature_K").back() - 300) / (one.at("mean_temperature_K").back() - 300), 1,
+                0.02);
+  }
+}
+
+// Planted: a resumed run that hands its springs over in another order.
+TEST_F(RanksLiggghts, TheDeathOfARankEndsTheOthersAndResumesExactlyLong) {
+  const auto scene = scratch.write("plug.toml", small_plug), stopped = scratch.root / "stopped",
+             whole = scratch.root / "whole";
+  const std::string engine = " --set dem.engine=liggghts";
+  EXPECT_NE(stopped_by(scratch, scene, stopped, SIGKILL, 2, engine), 0);
+  for (int wait = 0; wait < 200 && !ranks_on(stopped).empty(); ++wait)
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_TRUE(ranks_on(stopped).empty());
+  const std::string name = last_frame(stopped).filename();
+  const auto end = engine + " -q --threads 1 --set scene.end_time_s=" +
+                   std::to_string((std::stod(name.substr(2, 9)) + 300) * 1e-5) + " -o ";
+  const auto run = "run " + scene.string() + end;
+  ASSERT_EQ(run_on_ranks(scratch, 2, "granrun", run + stopped.string() + " --resume").code, 0);
+  ASSERT_EQ(run_on_ranks(scratch, 2, "granrun", run + whole.string()).code, 0);
+  expect_same_case(whole, stopped);
 }
 
 }  // namespace

@@ -4,8 +4,6 @@
 // Planted, each seen by the test named: a piece of walks counted by two ranks (TheLastFrameDoesNotDependOnRanks), a
 // direction of lines counted by two ranks (AViewFactorFileDoesNotDependOnRanks), a signal that only its own rank obeys
 // (ASignalToOneRankStopsAll).
-#include <signal.h>
-
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -81,37 +79,6 @@ void expect_one_case(const Scratch& scratch, const std::string& more, const std:
   }
 }
 
-/// Process numbers of the ranks that write to this folder.
-std::vector<pid_t> ranks_on(const fs::path& folder) {
-  std::vector<pid_t> found;
-  for (const auto& entry : fs::directory_iterator("/proc")) {
-    const std::string name = entry.path().filename();
-    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
-    const std::string line = content(entry.path() / "cmdline");
-    if (line.find("/granrun") < line.find('\0') && line.find(folder.string()) != std::string::npos)
-      found.push_back(std::stoi(name));
-  }
-  return found;
-}
-
-/// Starts an endless run on three ranks, signals one of them after the first frame; the launcher's exit code.
-int stopped_by(const Scratch& scratch, const fs::path& scene, const fs::path& folder, int signal) {
-  set_mpi_for_tests();
-  const std::string command = "mpirun -n 3 " GRANRAD_BIN_DIR "/granrun run " + scene.string() +
-                              " -q --threads 1 --set scene.end_time_s=100 -o " + folder.string() + " >" +
-                              (scratch.root / "stopped.txt").string() + " 2>&1 </dev/null";
-  std::thread stopper([&] {
-    for (int wait = 0; wait < 1500 && !fs::exists(folder / "frames" / "f_000000800.hdf"); ++wait)
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    const auto ranks = ranks_on(folder);
-    EXPECT_EQ(ranks.size(), 3u);
-    if (!ranks.empty()) kill(ranks.back(), signal);
-  });
-  const int code = exit_code(std::system(command.c_str()));
-  stopper.join();
-  return code;
-}
-
 /// Goes on from the last frame on two ranks, and compares with one process that never stopped.
 void expect_exact_resume(const Scratch& scratch, const fs::path& scene, const fs::path& stopped) {
   const std::string name = last_frame(stopped).filename();
@@ -174,6 +141,25 @@ TEST_F(RanksLong, TheLastFrameDoesNotDependOnRanksLong) {
                   {2});
   expect_one_case(scratch, " --unset radiation.rays --set radiation.error=0.05", {3});
   expect_one_case(scratch, " --set radiation.source=none", {2});
+}
+
+// Ranks share the search of a recorded flow's contacts. Planted: conductances joined in the order of the ranks.
+TEST_F(Ranks, HeatOnARecordedFlowDoesNotDependOnRanks) {
+  const auto flow = scratch.root / "flow";
+  const auto scene = scratch.write("plug.toml", small_plug);
+  ASSERT_EQ(granrun(scratch, plug_line(scene, flow, " --set output.frames_every_s=0.002")).code, 0);
+  std::string text = small_plug;
+  const auto feed = text.find("[feed]");
+  text.erase(feed, text.find("[radiation]") - feed);
+  text = edited(text, "diameter_m = \"0.8 mm\"\ntemperature_K = 300\n", "temperature_K = 300\n");
+  text += "[dem]\nengine = \"replay\"\nfiles = \"flow/frames/f_*.hdf\"\n";
+  const auto replayed = scratch.write("replay.toml", text), alone = scratch.root / "alone";
+  const std::string ends = " --set walls.z_min.contact=false --set walls.z_max.contact=false";
+  ASSERT_EQ(granrun(scratch, plug_line(replayed, alone, ends)).code, 0);
+  const auto shared = scratch.root / "shared";
+  const auto outcome = run_on_ranks(scratch, 3, "granrun", plug_line(replayed, shared, ends));
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  expect_same_case(alone, shared);
 }
 
 TEST_F(Ranks, TheWallTimeStopsAllAndAnotherNumberOfRanksGoesOn) {

@@ -187,5 +187,39 @@ TEST(NearPairs, WallsMatchBruteForce) {
   }
 }
 
+// Planted: of each size class the same share of the whole order, not of the class (pairs missing and twice).
+TEST(NearPairs, PartsTogetherFindEachPairOnce) {
+  const Box box{{0, 0, 0}, {1, 1.2, 0.9}};
+  Bed bed = random_bed(400, box, {true, false, false}, 0.01, 0.08, 11);
+  for (const Wall& wall : box_walls(box)) bed.walls.push_back(wall);
+  const double gap = 0.02;
+  const NearPairs whole = near_pairs(bed, gap);
+  ASSERT_GT(whole.particles.size(), 100u);
+  ASSERT_GT(whole.walls.size(), 50u);
+  for (const int parts : {2, 3, 7, 1000}) {
+    std::vector<std::vector<NearPair>> particles;
+    NearPairs all;
+    for (int part = 0; part < parts; ++part) {
+      NearPairs found = near_pairs(bed, gap, part, parts);
+      particles.push_back(std::move(found.particles));
+      all.walls.insert(all.walls.end(), found.walls.begin(), found.walls.end());
+    }
+    all.particles = sorted_by_rows(particles, bed.size());
+    sort_by_rows(all.walls);
+    ASSERT_EQ(all.particles.size(), whole.particles.size()) << parts;
+    ASSERT_EQ(all.walls.size(), whole.walls.size()) << parts;
+    for (std::size_t k = 0; k < whole.particles.size(); ++k) {
+      const NearPair &a = all.particles[k], &b = whole.particles[k];
+      EXPECT_TRUE(a.i == b.i && a.j == b.j && a.distance_m == b.distance_m) << parts << " " << k;
+    }
+    for (std::size_t k = 0; k < whole.walls.size(); ++k) {
+      const NearWall &a = all.walls[k], &b = whole.walls[k];
+      EXPECT_TRUE(a.i == b.i && a.wall == b.wall && a.distance_m == b.distance_m &&
+                  a.gas_share == b.gas_share)
+          << parts << " " << k;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace granrad
