@@ -96,8 +96,6 @@ void add_touches(const Bed& bed, const Touches& touches, const ContactTable& con
   const auto solid = [&](std::int32_t i, std::int32_t j, double root_area_m) {
     return contact(bed.material[i], bed.material[j]) * root_area_m;
   };
-  for (auto& g : result.particles) g.solid_W_K = 0;
-  for (auto& g : result.walls) g.solid_W_K = 0;
   const std::size_t near = result.particles.size();
   std::size_t k = 0;
   for (const PairTouch& touch : touches.particles) {
@@ -121,6 +119,7 @@ void add_touches(const Bed& bed, const Touches& touches, const ContactTable& con
 Conductances conductances(const Bed& bed, const NearPairs& pairs, const ConductionSettings& settings,
                           const std::vector<char>& in_region, const Touches* touches) {
   const ContactTable contact(bed.materials, settings);
+  const bool solid = settings.solid && !touches;
   const auto inside = [&](std::int32_t i) { return in_region.empty() || in_region[i]; };
 
   Conductances result;
@@ -131,11 +130,12 @@ Conductances conductances(const Bed& bed, const NearPairs& pairs, const Conducti
     PairConductance& g = result.particles[k] = {i, j, 0, 0};
     if (!inside(i) || !inside(j)) continue;
     const double ri = bed.radius_m[i], rj = bed.radius_m[j];
-    const double disc_m2 = contact_area_m2(ri, rj, distance);
-    g.solid_W_K = settings.rough && settings.solid
-                      ? rough_conductance(settings, bed.materials[bed.material[i]],
-                                          bed.materials[bed.material[j]], ri * rj / (ri + rj), disc_m2)
-                      : contact(bed.material[i], bed.material[j]) * std::sqrt(disc_m2);
+    const double disc_m2 = solid ? contact_area_m2(ri, rj, distance) : 0;
+    if (disc_m2 > 0)
+      g.solid_W_K = settings.rough
+                        ? rough_conductance(settings, bed.materials[bed.material[i]],
+                                            bed.materials[bed.material[j]], ri * rj / (ri + rj), disc_m2)
+                        : contact(bed.material[i], bed.material[j]) * std::sqrt(disc_m2);
     g.gas_W_K = gas_conductance(settings.gas, ri, rj, distance);
   }
   drop_empty(result.particles);
@@ -146,11 +146,11 @@ Conductances conductances(const Bed& bed, const NearPairs& pairs, const Conducti
     WallConductance& g = result.walls[k] = {i, wall, 0, 0};
     if (!inside(i) || !conducts(bed.walls[wall])) continue;
     const double r = bed.radius_m[i];
-    const double disc_m2 = wall_contact_area_m2(r, distance);
+    const double disc_m2 = solid ? wall_contact_area_m2(r, distance) : 0;
     const Material& material = bed.materials[bed.material[i]];
-    g.solid_W_K = settings.rough && settings.solid
-                      ? rough_conductance(settings, material, material, r, disc_m2)
-                      : contact(bed.material[i], bed.material[i]) * std::sqrt(disc_m2);
+    if (disc_m2 > 0)
+      g.solid_W_K = settings.rough ? rough_conductance(settings, material, material, r, disc_m2)
+                                   : contact(bed.material[i], bed.material[i]) * std::sqrt(disc_m2);
     g.gas_W_K = gas_share * gas_conductance_to_wall(settings.gas, r, distance);
   }
   drop_empty(result.walls);

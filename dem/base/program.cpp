@@ -1,6 +1,7 @@
 #include "dem/base/program.h"
 
 #include <fmt/core.h>
+#include <malloc.h>
 #include <sys/ioctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -71,9 +72,16 @@ void print_message(const std::string& text) {
     fmt::print(stderr, "{}\n", text);
 }
 
+void keep_freed_memory() {
+  constexpr int largest_kept = 32 << 20, kept = 1 << 30;  // bytes; the first is the most it takes
+  mallopt(M_MMAP_THRESHOLD, largest_kept);
+  mallopt(M_TRIM_THRESHOLD, kept);
+}
+
 int run_program(const std::string& name, const std::function<int()>& body) {
   try {
     respect_granted_processors();
+    keep_freed_memory();
     const int code = body();
     return interrupt_signal() ? 128 + interrupt_signal() : code;
   } catch (const Error& error) {

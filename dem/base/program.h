@@ -19,6 +19,11 @@ void print_message(const std::string& text);
 /// (SIGTERM).
 int run_program(const std::string& name, const std::function<int()>& body);
 
+/// Keeps freed memory for the next allocation, as run_program does. Lists of pairs are made and freed at every heat step; the
+/// kernel would take and clear their pages each time: 40 % of all page faults and 6 % of a run with a heat step every 10 DEM
+/// steps.
+void keep_freed_memory();
+
 /// After this, SIGINT, SIGTERM and SIGHUP (unless it is ignored, as under nohup) only set a flag; the time loop
 /// looks at it, saves and returns. A second signal ends the process at once. SIGUSR1 asks for a checkpoint.
 void install_signal_handlers();

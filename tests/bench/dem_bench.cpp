@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "coupling/heat/heat_step.h"
+#include "dem/base/program.h"
 #include "dem/base/random.h"
 #include "dem/native/native_engine.h"
 #include "tests/bench/bench_arguments.h"
@@ -269,6 +270,7 @@ int run(const std::filesystem::path& folder, bool quick) {
 }  // namespace granrad::bench
 
 int main(int argc, char** argv) {
+  granrad::keep_freed_memory();
   const granrad::bench::BenchArguments given(argc, argv);
   return given.folder.empty() ? 2 : granrad::bench::run(given.folder, given.quick);
 }
