@@ -235,7 +235,7 @@ EOF
       esac
     done
     ((${#which[@]})) || which=(trace dem heat case front scale load forecast)
-    [[ ${options[*]} != --full || ${which[*]} == front ]] || { echo "--full is for front" >&2; exit 2; }
+    [[ ${options[*]} != --full || ${which[*]} =~ ^(front|scale)$ ]] || { echo "--full is for front and scale" >&2; exit 2; }
     set_up
     install_missing liggghts lammps
     for name in "${which[@]}"; do

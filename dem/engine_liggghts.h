@@ -22,9 +22,9 @@ namespace granrad {
 /// (dem/liggghts/parts.h). Results on different numbers of ranks differ by the order of sums.
 ///
 /// A function of the Bed: each advance makes a rank's spheres and springs anew from the Bed in the order of the ids, so
-/// feeds may change the Bed at will, parts may move, and nothing is left of how spheres came to their ranks. That takes a
-/// rank the time of two DEM steps of its own spheres beside the three steps of LIGGGHTS' own set-up, and half a step of
-/// all spheres for what the ranks tell each other. A resumed run continues bit for bit where it is cut
+/// feeds may change the Bed at will, parts may move, and nothing is left of how spheres came to their ranks. That takes the
+/// time of some three DEM steps of a rank's own spheres, most of it LIGGGHTS' set-up of a run, and of one step of all
+/// spheres for what ranks tell each other. A resumed run continues bit for bit where it is cut
 /// as the first was, as granrun does. Cut elsewhere it differs by as much as the step's error: LIGGGHTS
 /// starts from forces at whole-step velocities, where inside a run it uses those of half a step before.
 ///

@@ -13,7 +13,11 @@ namespace {
 
 // LIGGGHTS' seconds over the native engine's on one core, settled and flowing beds (docs/performance.md).
 constexpr double liggghts_slowness = 7;
-constexpr double hand_over_s = 3.2e-6;  // of one sphere to LIGGGHTS and back, on every rank
+// Of one sphere at a heat step of LIGGGHTS: what each rank does for its own, most of it LIGGGHTS' set-up of a run; what all
+// ranks do for every sphere.
+constexpr double set_up_s = 4.5e-7, hand_over_s = 1.5e-7;
+constexpr double searched_share =
+    0.65;  // of conduction: pairs and their conductances, which ranks share there
 constexpr double network_B_s = 1e9, network_delay_s = 5e-5;
 constexpr double liggghts_bytes = 700;  // of a sphere, over all ranks
 constexpr double least_gain = 1.25;     // of twice as many ranks
@@ -58,10 +62,12 @@ RankForecast forecast_on_ranks(const Case& c, const Forecast& one, EngineKind en
     const double in_all =
         one.flow_s * (c.flow.engine == EngineKind::liggghts ? 1 : liggghts_slowness * one.threads);
     cost.flow_s = in_all / ranks;
-    cost.gather_s = one.heat_steps * hand_over_s * one.mean_count;
+    cost.gather_s = one.heat_steps * one.mean_count * (set_up_s / ranks + hand_over_s);
     cost.memory_bytes += liggghts_bytes * one.mean_count / ranks;
   }
-  cost.conduction_s = one.conduction_s;
+  const bool searches = engine == EngineKind::liggghts || engine == EngineKind::replay;
+  const double shared_conduction = searches ? searched_share : 0;
+  cost.conduction_s = one.conduction_s * (1 - shared_conduction + shared_conduction / ranks);
   cost.output_s = one.output_s;
   const double shared_s = one.radiation_s - one.radiation_repeated_s;
   cost.radiation_s = one.radiation_repeated_s + shared_s / ranks;

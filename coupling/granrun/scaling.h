@@ -15,8 +15,9 @@ struct RankForecast {
 };
 
 /// What the forecast for one rank becomes on `ranks`, for an engine: the native flow is repeated on every rank; that of
-/// LIGGGHTS is shared, `liggghts_slowness` times as dear in all, and handed over at every heat step (gather_s). Conduction
-/// and the output are not shared. Of the radiation, what is shared goes down with the ranks, and heats are exchanged over
+/// LIGGGHTS is shared, `liggghts_slowness` times as dear in all, and handed over at every heat step (gather_s, of which a
+/// part is shared). There and in recorded flows ranks share the search of contacts; temperatures and the output are not
+/// shared. Of the radiation, what is shared goes down with the ranks, and heats are exchanged over
 /// a network of 1 GB/s and 50 us a step of log2 R steps. A model: it knows no waiting of uneven ranks.
 RankForecast forecast_on_ranks(const Case& c, const Forecast& one, EngineKind engine, int ranks);
 

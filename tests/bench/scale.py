@@ -2,12 +2,12 @@
 """What each part of a coupled run takes on one and on two ranks, beside LIGGGHTS' flow alone, and what a model fitted
 to that says of more ranks.
 
-Usage: scale.py [--quick] GRANRUN FOLDER
+Usage: scale.py [--quick | --full] GRANRUN FOLDER
 
 Beds of touching spheres on a lattice, pushed and under gravity; conduction every 100 DEM steps, rays (as many walks as
-spheres) every 1000. One thread a rank. "alone" is LIGGGHTS through the same plug-in with no heat at all: twice the
-difference of all steps in one go and half of them, so that neither start nor hand-over counts. "gather" is what the
-coupled flow takes beyond all steps in one go: the hand-overs of the other heat steps.
+spheres) every 1000. One thread a rank. "alone" is LIGGGHTS through the same plug-in with no heat at all: the difference of two
+fifths and one fifth of the steps, each in one go, so that neither start nor hand-over counts. "gather" is what the coupled flow
+takes beyond that and its start: what goes between LIGGGHTS and the bed at the heat steps. --full: a million spheres as well.
 """
 import csv, json, math, os, pathlib, shutil, subprocess, sys
 
@@ -84,10 +84,11 @@ def measure(machine, side, ranks, engine, steps):
     spent = machine.seconds(scene(side, engine, steps, HEAT_STEPS, True, side**3), ranks)
     flow = spent["flow"]
     if engine == "liggghts":
-        half, whole = (machine.seconds(scene(side, engine, n, n, False, 0), ranks)["flow"] for n in (steps // 2, steps))
-        flow = alone = max(1e-9, 2 * (whole - half))
+        less, more = (machine.seconds(scene(side, engine, n, n, False, 0), ranks)["flow"] for n in (steps // 5, 2 * steps // 5))
+        flow = alone = max(1e-9, 5 * (more - less))
+        start = max(0.0, less - alone / 5)  # with one hand-over
         hand_overs = steps // HEAT_STEPS
-        gather = max(0.0, spent["flow"] - whole) * hand_overs / (hand_overs - 1)
+        gather = max(0.0, spent["flow"] - alone - start) * hand_overs / (hand_overs - 1)
     reduce = min(spent["between_ranks"], spent["radiation"])
     return {"engine": engine, "spheres": side**3, "ranks": ranks, "steps": steps, "flow": flow,
             "gather": gather, "conduction": spent["conduction"], "rays": spent["radiation"] - reduce, "reduce": reduce,
@@ -107,14 +108,15 @@ def print_row(row):
 def model(one, two, ranks, spheres):
     """Seconds of each part on `ranks` for `spheres`, from measurements of one bed on one and two ranks.
 
-    a part that is shared: t(R) = repeated + shared / R, both from R = 1 and 2; all in proportion to the spheres;
+    a part that is shared (rays; with LIGGGHTS gather and conduction): t(R) = repeated + shared / R, both from R = 1 and 2; all
+    in proportion to the spheres;
     the flow of LIGGGHTS: shared, with what two ranks lost to each other growing as the surface of a rank's part,
     (R / N)^(1/3); one exchange of heats a radiation update: the measured time, and a delay for log2 R steps."""
     size = spheres / one["spheres"]
     seconds = {}
     for part in PARTS:
         first, second = one[part] * size, two[part] * size
-        if part == "rays":
+        if part == "rays" or (part in ("gather", "conduction") and one["engine"] == "liggghts"):
             repeated = min(max(0.0, 2 * second - first), first)
             seconds[part] = repeated + (first - repeated) / ranks
         elif part == "flow" and one["engine"] == "liggghts":
@@ -148,15 +150,15 @@ def print_model(rows, engine, out):
 
 
 def main():
-    quick = "--quick" in sys.argv
-    granrun, folder = [a for a in sys.argv[1:] if a != "--quick"]
+    sides = (16,) if "--quick" in sys.argv else (27, 58, 100) if "--full" in sys.argv else (27, 58)
+    granrun, folder = [a for a in sys.argv[1:] if not a.startswith("--")]
     folder = pathlib.Path(folder) / "scale"
     folder.mkdir(parents=True, exist_ok=True)
     machine = Machine(granrun, folder)
     print("CPU:", next((l.split(":")[1].strip() for l in open("/proc/cpuinfo") if l.startswith("model name")), "unknown"),
-          f"x {os.cpu_count()}")
+          f"x {os.cpu_count()}, load {os.getloadavg()[0]:.1f}")
     rows = []
-    for side in (16,) if quick else (27, 58, 100):
+    for side in sides:
         write_bed(folder / f"bed_{side}.csv", side)
         for engine in ("liggghts", "native"):
             for ranks in (1, 2):
@@ -173,7 +175,7 @@ def main():
         for engine in ("liggghts", "native"):
             print_model(rows, engine, out)
     print("\nThe model's assumptions: one rank a node with one thread, as measured; a network as fast as this machine's memory "
-          f"but for {1e6 * NETWORK_DELAY_S:.0f} us a step; beds cut evenly; native flow, conduction and output as on one rank.")
+          f"but for {1e6 * NETWORK_DELAY_S:.0f} us a step; beds cut evenly; native flow and conduction, temperatures and output as on one rank.")
 
 
 main()

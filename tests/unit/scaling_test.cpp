@@ -37,7 +37,8 @@ TEST(Scaling, RanksShareRaysAndRepeatTheNativeFlow) {
 TEST(Scaling, LiggghtsSharesTheFlowAndHandsItOver) {
   const auto f = forecast_on_ranks(plug(), usual(), EngineKind::liggghts, 7);
   EXPECT_NEAR(f.flow_s, 100 * 2, 1e-9);  // 7 times as dear a core, two cores of the native engine, 7 ranks
-  EXPECT_NEAR(f.gather_s, 1e4 * 1e4 * 3.2e-6, 1e-9);
+  EXPECT_NEAR(f.gather_s, 1e4 * 1e4 * (4.5e-7 / 7 + 1.5e-7), 1e-9);
+  EXPECT_NEAR(f.conduction_s, 3.5 + 6.5 / 7, 1e-9);
   EXPECT_NEAR(f.memory_bytes, 1e9 + 700 * 1e4 / 7, 1e-3);
 }
 
