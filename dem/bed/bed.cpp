@@ -57,6 +57,7 @@ Vec3 wrapped_into_box(const Bed& bed, Vec3 p) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!bed.periodic[axis]) continue;
     const double low = bed.box.min[axis], high = bed.box.max[axis], period = high - low;
+    if (p[axis] >= low && p[axis] < high) continue;  // most are; the division is dear
     p[axis] = std::clamp(p[axis] - period * std::floor((p[axis] - low) / period), low, high);
   }
   return p;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <tuple>
 
 #include "dem/base/error.h"
@@ -21,24 +22,30 @@ struct SizeClass {
   double largest_radius_m;
 };
 
-std::vector<Vec3> wrapped_positions(const Bed& bed) {
-  std::vector<Vec3> wrapped;
-  wrapped.reserve(bed.size());
-  for (std::size_t i = 0; i < bed.size(); ++i) {
+std::vector<std::int32_t> all_of(const Bed& bed) {
+  std::vector<std::int32_t> all(bed.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+/// By particle; those not asked for stay at the origin.
+std::vector<Vec3> wrapped_positions(const Bed& bed, const std::vector<std::int32_t>& among) {
+  std::vector<Vec3> wrapped(bed.size());
+  for (const auto i : among) {
     if (!is_finite(bed.position_m[i]))
       throw NumericalError(fmt::format("particle {} has no finite position", bed.id[i]));
-    wrapped.push_back(wrapped_into_box(bed, bed.position_m[i]));
+    wrapped[i] = wrapped_into_box(bed, bed.position_m[i]);
   }
   return wrapped;
 }
 
 /// Largest radius first.
-std::vector<SizeClass> size_classes(const Bed& bed, const std::vector<Vec3>& points, double max_gap_m) {
-  if (bed.size() == 0) return {};
-  const double largest = *std::max_element(bed.radius_m.begin(), bed.radius_m.end());
+std::vector<SizeClass> size_classes(const Bed& bed, const std::vector<Vec3>& points,
+                                    const std::vector<std::int32_t>& among, double max_gap_m) {
+  double largest = 0;
+  for (const auto i : among) largest = std::max(largest, bed.radius_m[i]);
   std::map<int, std::vector<std::int32_t>> members;
-  for (std::size_t i = 0; i < bed.size(); ++i)
-    members[static_cast<int>(std::log2(largest / bed.radius_m[i]))].push_back(static_cast<std::int32_t>(i));
+  for (const auto i : among) members[static_cast<int>(std::log2(largest / bed.radius_m[i]))].push_back(i);
   std::vector<SizeClass> classes;
   for (auto& [octave, list] : members) {
     double radius = 0;
@@ -243,8 +250,9 @@ std::vector<NearWall> find_walls(const Bed& bed, const std::vector<Vec3>& points
 }  // namespace
 
 NearPairs near_pairs(const Bed& bed, double max_gap_m, int part, int parts) {
-  const std::vector<Vec3> points = wrapped_positions(bed);
-  const std::vector<SizeClass> classes = size_classes(bed, points, max_gap_m);
+  const std::vector<std::int32_t> all = all_of(bed);
+  const std::vector<Vec3> points = wrapped_positions(bed, all);
+  const std::vector<SizeClass> classes = size_classes(bed, points, all, max_gap_m);
   const auto mine = members_of_part(classes, static_cast<std::size_t>(part), static_cast<std::size_t>(parts));
   std::vector<char> wanted(parts > 1 ? bed.size() : 0, 0);
   if (parts > 1)
@@ -255,9 +263,11 @@ NearPairs near_pairs(const Bed& bed, double max_gap_m, int part, int parts) {
           find_walls(bed, points, classes, wanted, surface, max_gap_m)};
 }
 
-std::vector<NearWall> near_walls(const Bed& bed, const WallSurface& surface, double max_gap_m) {
-  const std::vector<Vec3> points = wrapped_positions(bed);
-  return find_walls(bed, points, size_classes(bed, points, max_gap_m), {}, surface, max_gap_m);
+std::vector<NearWall> near_walls(const Bed& bed, const WallSurface& surface, double max_gap_m,
+                                 const std::vector<std::int32_t>* among) {
+  const std::vector<std::int32_t> particles = among ? *among : all_of(bed);
+  const std::vector<Vec3> points = wrapped_positions(bed, particles);
+  return find_walls(bed, points, size_classes(bed, points, particles, max_gap_m), {}, surface, max_gap_m);
 }
 
 }  // namespace granrad

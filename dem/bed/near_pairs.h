@@ -39,8 +39,9 @@ struct NearPairs {
 /// regions of the bed with as many particles each.
 NearPairs near_pairs(const Bed& bed, double max_gap_m, int part = 0, int parts = 1);
 
-/// Its walls alone; `surface` is that of the bed's walls, at its time.
-std::vector<NearWall> near_walls(const Bed& bed, const WallSurface& surface, double max_gap_m);
+/// Its walls alone; `surface` is that of the bed's walls, at its time. `among`: the particles to look at, each once; null: all.
+std::vector<NearWall> near_walls(const Bed& bed, const WallSurface& surface, double max_gap_m,
+                                 const std::vector<std::int32_t>* among = nullptr);
 
 /// The near walls of particle i at p among the standing facets from `begin` to `end`, in ascending order.
 void append_near_walls(const WallSurface& surface, std::int32_t i, const Vec3& p, double radius_m,

@@ -260,9 +260,13 @@ NearPairs NativeEngine::near_pairs(const Bed& bed, double max_gap_m) {
   NearPairs pairs;
   pairs.particles = near_particles(bed, e.rows, *e.lists, max_gap_m);
   if (!bed.walls.empty()) {
-    const bool listed = complete.walls_m >= max_gap_m && !e.periods->any && e.surface->is_whole();
-    pairs.walls = listed ? near_walls(*e.lists, e.rows, *e.surface, max_gap_m)
-                         : granrad::near_walls(bed, *e.surface, max_gap_m);
+    const bool listed = complete.walls_m >= max_gap_m && e.surface->is_whole();
+    const bool images = e.periods->any;
+    const auto at_walls =
+        listed && images ? particles_at_walls(*e.lists, e.rows) : std::vector<std::int32_t>{};
+    pairs.walls = listed && !images
+                      ? near_walls(*e.lists, e.rows, *e.surface, max_gap_m)
+                      : granrad::near_walls(bed, *e.surface, max_gap_m, listed ? &at_walls : nullptr);
   }
   return pairs;
 }

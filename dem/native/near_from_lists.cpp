@@ -65,6 +65,15 @@ std::vector<NearPair> near_particles(const Bed& bed, const Rows& rows, const Con
   return sorted_by_rows(parts, bed.size());
 }
 
+std::vector<std::int32_t> particles_at_walls(const ContactLists& lists, const Rows& rows) {
+  std::vector<std::int32_t> particles;
+  for (const Share& share : lists.shares())
+    for (const auto& near : share.walls.near()) particles.push_back(rows.bed_index[near.row]);
+  std::sort(particles.begin(), particles.end());
+  particles.erase(std::unique(particles.begin(), particles.end()), particles.end());
+  return particles;
+}
+
 std::vector<NearWall> near_walls(const ContactLists& lists, const Rows& rows, const WallSurface& surface,
                                  double max_gap_m) {
   std::vector<NearWall> found;

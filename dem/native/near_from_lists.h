@@ -9,6 +9,9 @@ namespace granrad::native {
 std::vector<NearPair> near_particles(const Bed& bed, const Rows& rows, const ContactLists& lists,
                                      double max_gap_m);
 
+/// The particles that may be that near to a wall, or to an image of one across a periodic border.
+std::vector<std::int32_t> particles_at_walls(const ContactLists& lists, const Rows& rows);
+
 /// Its walls likewise. Not for periodic beds, where walls are met at images.
 std::vector<NearWall> near_walls(const ContactLists& lists, const Rows& rows, const WallSurface& surface,
                                  double max_gap_m);

@@ -68,12 +68,12 @@ class Machine:
                                 OMPI_MCA_rmaps_base_oversubscribe="1",
                                 OMPI_MCA_btl_vader_single_copy_mechanism="none")
 
-    def seconds(self, text, ranks):
+    def seconds(self, text, ranks, threads=1):
         file, case = self.folder / "scale.toml", self.folder / "case"
         file.write_text(text)
         shutil.rmtree(case, ignore_errors=True)
         launcher = ["mpirun", "-n", str(ranks), "--bind-to", "core"] if ranks > 1 else []
-        subprocess.run(launcher + [self.granrun, "run", str(file), "-q", "--threads", "1", "-o", str(case)],
+        subprocess.run(launcher + [self.granrun, "run", str(file), "-q", "--threads", str(threads), "-o", str(case)],
                        check=True, env=self.environment, stdout=subprocess.DEVNULL)
         return json.loads((case / "run.json").read_text())["computing_seconds"]
 
@@ -149,6 +149,25 @@ def print_model(rows, engine, out):
             out.writerow([kind, engine, ranks] + [f"{t[p]:.5g}" for p in PARTS] + [f"{total:.5g}", f"{efficiency:.4f}"])
 
 
+def print_cores(machine, one):
+    """The native flow on the cores of one node, from one and two threads.
+
+    Threads have slabs along the longest axis. Pairs across a cut, a third of one of `side` layers, are worked on both sides;
+    what two threads do not share otherwise, waiting included, is taken to stay and to grow with log2 of the threads."""
+    side = round(one["spheres"] ** (1 / 3))
+    t1 = one["flow"]
+    t2 = machine.seconds(scene(side, "native", one["steps"], HEAT_STEPS, True, side**3), 1, threads=2)["flow"]
+    share = lambda threads: (1 + (threads - 1) / (3 * side)) / threads
+    repeated = max(0.0, (t2 - t1 * share(2)) / (1 - share(2)))
+    print(f"\nnative flow on cores of one node, {one['spheres']} spheres: two threads {t1 / t2:.2f} x one; a model of more")
+    print(f"{'threads':>8} {'seconds':>10} {'times one':>10} {'efficiency':>10}")
+    for threads in (1, 2, 4, 8, 16, 32, 64):
+        if side / threads < 1.5: break  # slabs of less than a layer and a half
+        grown = repeated * max(1.0, math.log2(threads)) if threads > 1 else repeated
+        t = t1 if threads == 1 else grown + (t1 - repeated) * share(threads)
+        print(f"{threads:>8} {t:>10.3g} {t1 / t:>10.2f} {t1 / t / threads:>10.2f}")
+
+
 def main():
     sides = (16,) if "--quick" in sys.argv else (27, 58, 100) if "--full" in sys.argv else (27, 58)
     granrun, folder = [a for a in sys.argv[1:] if not a.startswith("--")]
@@ -164,7 +183,6 @@ def main():
             for ranks in (1, 2):
                 rows.append(measure(machine, side, ranks, engine, 1000))
                 print_row(rows[-1])
-        (folder / f"bed_{side}.csv").unlink()
     with open(folder / "scale.csv", "w") as file:
         out = csv.DictWriter(file, rows[0].keys())
         out.writeheader()
@@ -174,6 +192,9 @@ def main():
         out.writerow(["scaling", "engine", "ranks"] + PARTS + ["total", "efficiency"])
         for engine in ("liggghts", "native"):
             print_model(rows, engine, out)
+    for row in rows:
+        if row["engine"] == "native" and row["ranks"] == 1: print_cores(machine, row)
+    for side in sides: (folder / f"bed_{side}.csv").unlink()
     print("\nThe model's assumptions: one rank a node with one thread, as measured; a network as fast as this machine's memory "
           f"but for {1e6 * NETWORK_DELAY_S:.0f} us a step; beds cut evenly; native flow and conduction, temperatures and output as on one rank.")
 
