@@ -31,7 +31,7 @@ installed=$SECONDS
 inside 'grep -E "newly installed|Need to get" /tmp/apt.log'
 
 say "new, check, run, report, render"
-inside 'granrun new my.toml --from plug -q && granrun check my.toml >/dev/null &&
+inside 'granrun new my.toml --from plug >/dev/null && granrun check my.toml >/dev/null &&
   granrun run my.toml -o out --set scene.end_time_s=0.05 --set radiation.rays=500 -q &&
   granrun report out -q && granrun render out -o bed.png -q && test -s out/report.html && test -s bed.png'
 echo "from nothing to the first picture: $((SECONDS - begin)) s, of them $((installed - begin)) s to install"

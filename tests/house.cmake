@@ -2,6 +2,7 @@
 granrad_test(unit/layering granrad_flags)
 granrad_test(unit/shortest_numbers granrad_scene)
 granrad_test(unit/stated_number granrad_base)
+granrad_test(unit/remaining_time granrad_base)
 # pages in a browser, where there is one
 add_test(NAME cli.PagesInBrowser COMMAND python3 ${CMAKE_CURRENT_SOURCE_DIR}/page/pages_in_browser.py
   ${PROJECT_BINARY_DIR}/bin ${PROJECT_SOURCE_DIR})

@@ -50,11 +50,11 @@ Series series(const std::string& label, const History& history, const std::strin
 }
 
 void add_chart(HtmlReport& page, const std::string& title, const std::string& y_label, const Results& results,
-               std::vector<Series> all) {
+               std::vector<Series> all, std::size_t least = 1) {
   std::erase_if(all, [](const Series& s) {
     return s.y.empty() || std::all_of(s.y.begin(), s.y.end(), [](double y) { return y == 0; });
   });
-  if (!all.empty())
+  if (all.size() >= least)
     page.chart({title, "time, s", y_label, all, false, false, std::pair{results.from_s, results.to_s}});
 }
 
@@ -66,7 +66,8 @@ void add_histories(HtmlReport& page, const History& h, const Results& r) {
              series("gas lenses", h, "h_sfs_W_m2K"), series("radiation", h, "h_rad_W_m2K")});
   add_chart(page, "Share of each path", "share of h", r,
             {series("solid contacts", h, "share_ss"), series("gas lenses", h, "share_sfs"),
-             series("radiation", h, "share_rad")});
+             series("radiation", h, "share_rad")},
+            2);
   add_chart(page, "Mean temperature", "T, K", r,
             {series("in the region", h, "mean_temperature_K"), series("leaving", h, "outlet_temperature_K")});
   add_chart(page, "Heat from the walls", "Q, W", r,
@@ -77,8 +78,7 @@ void add_histories(HtmlReport& page, const History& h, const Results& r) {
   add_chart(page, "Solid fraction in the region", "φ", r, {series("φ", h, "solid_fraction")});
   add_chart(page, "Contacts per particle", "coordination number", r,
             {series("contacts", h, "coordination_number")});
-  add_chart(page, "Energy ledger", "|stored − received| / received", r,
-            {series("defect", h, "energy_defect")});
+  add_chart(page, "Energy ledger", "relative defect", r, {series("defect", h, "energy_defect")});
 }
 
 void add_profile(HtmlReport& page, const std::vector<Bed>& beds, const char* name, int axis) {
@@ -93,6 +93,8 @@ void add_profile(HtmlReport& page, const std::vector<Bed>& beds, const char* nam
         points.x.push_back(1000 * p.position_m[k]);
         points.y.push_back(y[k]);
       }
+    if (std::all_of(points.y.begin(), points.y.end(), [](double v) { return v == 0; }))
+      return;  // a frozen bed
     page.chart({fmt::format("{} along {}", what, name),
                 fmt::format("{}, mm", name),
                 y_label,
@@ -187,7 +189,7 @@ void add_results(HtmlReport& page, const Results& results) {
   }
   page.heading(fmt::format("Means from {:g} s to {:g} s", results.from_s, results.to_s));
   page.paragraph(results.steady ? "Steady: neither the mean temperature nor the heat drifts over this window."
-                                : results.note + ".");
+                                : "N" + results.note.substr(1) + ".");  // "not steady: ..."
   page.table({"quantity", "mean", "standard error", "meaning"}, rows);
   add_walls(page, results);
 }

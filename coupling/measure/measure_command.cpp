@@ -87,7 +87,7 @@ void write_page(const fs::path& file, const std::string& name, const Conductivit
               tile("resistance of a plate's layer", "m² K/W", r.wall_resistance_m2K_W.value,
                    r.wall_resistance_m2K_W.error)});
   page.paragraph(fmt::format(
-      "{} particles of {:.4g} mm at solid fraction {:.4f}, {:.1f} diameters between two plates "
+      "{} particles of {:.4g} mm, solid fraction {:.4f} in the middle half, {:.1f} diameters between two plates "
       "in the steady state, about {:g} K. Errors are one standard error: rays by replicates, "
       "the bed by four columns.",
       r.particles, 1000 * r.diameter_m, r.solid_fraction, r.distance_m / r.diameter_m, r.temperature_K));

@@ -257,10 +257,10 @@ void add_claims(HtmlReport& page, const StudyOutcome& outcome) {
          j.verdict == "agrees" ? "" : j.claim.why});
   }
   page.heading("Every number beside ours");
-  page.paragraph(
-      fmt::format("{} numbers: {} agree, {} differ, {} cannot be reproduced as stated, {} are told beside "
-                  "a statement without a number.",
-                  rows.size(), agree, differ, not_possible, told));
+  std::string text = fmt::format("{} numbers: {} agree, {} differ", rows.size(), agree, differ);
+  if (not_possible > 0) text += fmt::format(", {} cannot be reproduced as stated", not_possible);
+  if (told > 0) text += fmt::format(", {} are told beside a statement without a number", told);
+  page.paragraph(text + ".");
   page.filtered_table(
       {"number", "quantity", "place", "claim", "reference", "ours", "unit", "difference", "verdict", "why"},
       rows, {8, 1, 2});

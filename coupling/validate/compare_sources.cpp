@@ -83,15 +83,22 @@ SourceTrack heat_frozen_bed(const Case& c, const Bed& bed, const RadiationSettin
   moving.flow.engine = EngineKind::native;
   track.seconds_per_update = update_cost(moving, bed, threads).cpu_s;
   track.rays = radiation.kind == RadiationKind::correlation && !radiation.traced_walls ? 0 : radiation.rays;
+  const double steps = std::ceil(times_s.back() / every_s * (1 - 1e-9)),
+               draws_each = radiation.kind == RadiationKind::paths ? draws : 1,
+               work = steps + draws_each * static_cast<double>(times_s.size());
+  double done = 0;
+  progress(0);
   for (double time : times_s) {
     while (simulation.bed().time_s < time * (1 - 1e-9) && !simulation.finished()) {
       simulation.advance();
       track.curve_time_s.push_back(simulation.bed().time_s);
       track.curve_temperature_K.push_back(
           mean_temperature_K(simulation.bed(), in_region(simulation.bed(), frozen.flow.region)));
-      progress(simulation.bed().time_s);
+      progress(++done / work);
     }
-    track.at.push_back(observe(simulation, frozen, radiation.kind == RadiationKind::paths ? draws : 1));
+    track.at.push_back(observe(simulation, frozen, static_cast<int>(draws_each)));
+    done += draws_each;
+    progress(done / work);
   }
   return track;
 }
@@ -125,6 +132,10 @@ double seconds_to_reach(double goal_pct, const SourceComparison& with, double se
   const double room2 = goal_pct * goal_pct - with.bias_pct * with.bias_pct;
   if (!(room2 > 0)) return std::nan("");
   return seconds_per_update * std::max(1.0, with.source_noise_pct * with.source_noise_pct / room2);
+}
+
+double seconds_until_noise(double goal_pct, const SourceComparison& with, double seconds_per_update) {
+  return seconds_per_update * std::max(1.0, std::pow(with.source_noise_pct / goal_pct, 2));
 }
 
 std::string source_label(const RadiationSettings& settings) {

@@ -46,9 +46,12 @@ struct SourceComparison {
 
 /// CPU seconds that the mean over many updates takes to be within `goal_pct` of each particle's flux; nan: its bias is larger.
 double seconds_to_reach(double goal_pct, const SourceComparison& with, double seconds_per_update);
+/// The same of its noise alone: what it takes until the bias is all that is left.
+double seconds_until_noise(double goal_pct, const SourceComparison& with, double seconds_per_update);
 
 /// Heats `bed` (frozen) from its present temperatures to the last of times_s with the source `radiation`;
-/// everything else as the case says. `progress` is called with the time reached.
+/// everything else as the case says. `progress` is called with the part of
+/// the work that is done.
 SourceTrack heat_frozen_bed(const Case& c, const Bed& bed, const RadiationSettings& radiation,
                             const std::vector<double>& times_s, int draws, int threads,
                             const std::function<void(double)>& progress);

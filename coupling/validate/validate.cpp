@@ -173,10 +173,10 @@ ValidatedBed validate_bed(const NamedBed& named, const RunOptions& options) {
       named.name, solid_fraction(named.bed, c.flow.region), emissivity(c), named.bed.size(), {}};
   for (std::size_t k = 0; k < sources.size(); ++k) {
     Progress progress(
-        fmt::format("{}, {}/{} {}", named.name, k + 1, sources.size(), source_label(sources[k])),
-        times.back(), options.quiet());
+        fmt::format("{}, {}/{} {}", named.name, k + 1, sources.size(), source_label(sources[k])), 1,
+        options.quiet());
     result.tracks.push_back(heat_frozen_bed(c, named.bed, sources[k], times, k == 0 ? reference_draws : 1,
-                                            options.threads, [&](double time) { progress.update(time); }));
+                                            options.threads, [&](double part) { progress.update(part); }));
     if (k == 0) result.tracks.back().label += " (reference)";
     progress.finish();
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "dem/base/files/csv.h"
+#include "dem/base/stated_number.h"
 #include "dem/page/html_report.h"
 
 namespace granrad {
@@ -76,8 +77,8 @@ std::vector<std::string> row_cells(const SourceTrack& track, const SourceInstant
           fmt::format("{:.2f}", at.mean_temperature_K),
           fmt::format("{:.1f}", at.mean_flux_W_m2),
           fmt::format("{:+.3f}", with.temperature_error_pct),
-          fmt::format("{:+.2f} ± {:.2f}", with.flux_error_pct, with.flux_noise_pct),
-          fmt::format("{:.2f} ± {:.2f}", with.own_rms_pct, with.rms_error_pct),
+          (with.flux_error_pct > 0 ? "+" : "") + stated(with.flux_error_pct, with.flux_noise_pct).text(),
+          stated(with.own_rms_pct, with.rms_error_pct).text(),
           fmt::format("{:.1e}", at.energy_defect),
           fmt::format("{:.3g}", track.seconds_per_update),
           known(seconds_to_reach(goal_pct, with, track.seconds_per_update))};
@@ -138,13 +139,13 @@ void add_distributions(HtmlReport& page, const ValidatedBed& bed) {
   page.histogram(fmt::format("Particle fluxes at {:g} s", time), "q, W/m²", fluxes);
 }
 
-/// One line a source, a point a step of its ladder: the error of one update against its price; or what a run pays for
-/// particle fluxes good for goal_pct, where noise averages out over updates and bias does not.
+/// One line a source, a point a step of its ladder: the error of one update against its price; or, over a run, the price
+/// of particle fluxes whose noise is goal_pct against the bias that no number of updates takes out.
 void add_speed(HtmlReport& page, const ValidatedBed& bed, bool over_run) {
   Chart chart{
       over_run ? "Speed against error, over a run" : "Speed against error, one update",
-      over_run ? "CPU seconds to reach 1 % over a run" : "CPU seconds per update (view factors made anew)",
-      over_run ? "bias of particle fluxes, %" : "particle flux rms error, %",
+      over_run ? "CPU seconds until the noise is 1 %" : "CPU seconds per update (view factors made anew)",
+      over_run ? "bias that stays, %" : "particle flux rms, %",
       {},
       true,
       true};
@@ -154,11 +155,13 @@ void add_speed(HtmlReport& page, const ValidatedBed& bed, bool over_run) {
     const auto& track = bed.tracks[k];
     const auto with = compare(track.at.front(), reference);
     const double x =
-        over_run ? seconds_to_reach(goal_pct, with, track.seconds_per_update) : track.seconds_per_update;
+        over_run ? seconds_until_noise(goal_pct, with, track.seconds_per_update) : track.seconds_per_update;
     if (!std::isfinite(x)) continue;
     auto at = std::find_if(chart.series.begin(), chart.series.end(),
                            [&](const Series& s) { return s.label == track.label; });
-    if (at == chart.series.end()) at = chart.series.insert(at, Series{track.label, {}, {}, {}, true});
+    if (at == chart.series.end())
+      at = chart.series.insert(
+          at, Series{.label = track.label, .x = {}, .y = {}, .points = true, .joined = true});
     at->colour = colour_of(bed, track.label);
     at->x.push_back(x);
     at->y.push_back(std::max(least_pct, over_run ? with.bias_pct : with.own_rms_pct));
@@ -236,15 +239,6 @@ std::string validation_csv(const std::vector<ValidatedBed>& beds) {
 void write_validation_report(const std::filesystem::path& file, const std::string& title,
                              const std::vector<ValidatedBed>& beds) {
   HtmlReport page(title);
-  page.paragraph(
-      "A frozen bed is heated by its walls, once with each exchange source. Errors are against the first "
-      "source of "
-      "each table, the reference. Flux errors are relative to the mean flux of the reference; at late times "
-      "both "
-      "temperature and flux have drifted apart, so early rows judge the view factors and late rows the "
-      "heating. The noise of the reference is taken out of the rms over the particles. Over a run the noise of a source "
-      "averages out and its bias stays: CPU s to 1 % says when the mean flux of each particle is within 1 % (rms), or "
-      "never.");
   for (const auto& bed : beds) {
     page.heading(fmt::format("{}: {} particles, solid fraction {:.3f}", bed.name, bed.particle_count,
                              bed.solid_fraction));
@@ -260,6 +254,14 @@ void write_validation_report(const std::filesystem::path& file, const std::strin
     add_speed(page, bed, false);
     add_speed(page, bed, true);
   }
+  page.heading("How to read this page");
+  page.paragraph(
+      "A frozen bed is heated by its walls, once with each exchange source. Errors are against the first "
+      "source of each table, the reference. Flux errors are relative to the mean flux of the reference; at late "
+      "times both temperature and flux have drifted apart, so early rows judge the view factors and late rows "
+      "the heating. The noise of the reference is taken out of the rms over the particles. Over a run the noise of "
+      "a source averages out and its bias stays: CPU s to 1 % says when the mean flux of each particle is within 1 % "
+      "(rms), or never; the last figure shows both parts.");
   page.provenance_of_this_process();
   page.write(file);
 }

@@ -8,10 +8,12 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <ctime>
 #include <exception>
+#include <limits>
 #include <sstream>
 
 #include "dem/base/error.h"
@@ -130,6 +132,11 @@ double wall_seconds() {
   return now_s() - started_s;
 }
 
+double remaining_seconds(double done_first, double since_first_s, double done, double total) {
+  if (!(done > done_first)) return std::numeric_limits<double>::infinity();
+  return since_first_s * (total - done) / (done - done_first);
+}
+
 Progress::Progress(std::string what, double total, bool quiet)
     : what_(std::move(what)), total_(total), started_s_(now_s()), quiet_(quiet), terminal_(isatty(2)) {
   if (!terminal_) printed_s_ = started_s_ - 20;  // first line after 10 s
@@ -142,6 +149,7 @@ Progress::~Progress() {
 void Progress::update(double done, const std::string& detail) {
   if (quiet_) return;
   const double now = now_s();
+  if (first_s_ < 0) first_done_ = done, first_s_ = now;
   if (now - printed_s_ < (terminal_ ? 0.2 : 30.0)) return;
   printed_s_ = now;
   print(done, detail, false);
@@ -153,12 +161,13 @@ void Progress::finish(const std::string& detail) {
 }
 
 void Progress::print(double done, const std::string& detail, bool last) {
-  const double elapsed = now_s() - started_s_, part = total_ > 0 ? done / total_ : 1;
+  const double elapsed = now_s() - started_s_, part = total_ > 0 ? done / total_ : 1,
+               left = remaining_seconds(first_done_, now_s() - first_s_, done, total_);
   std::string line = fmt::format("{} {:5.1f} %", what_, 100 * part);
   if (last)
     line += fmt::format("  in {}", duration_text(elapsed));
-  else if (part > 0)
-    line += fmt::format("  ETA {}", duration_text(elapsed * (1 - part) / part));
+  else if (std::isfinite(left))
+    line += fmt::format("  ETA {}", duration_text(left));
   if (!detail.empty()) line += "  " + detail;
   if (terminal_)
     fmt::print(stderr, "\r\x1b[K{}{}", line, last ? "\n" : "");

@@ -40,6 +40,10 @@ std::string resources_used();
 std::string date_of_now();
 double wall_seconds();  ///< by the clock, since this process started
 
+/// What is left of `total` at the pace since the first look, when `done_first` was there already: set-up before it, and
+/// what an earlier run had done, do not count. Infinite before anything is done.
+double remaining_seconds(double done_first, double since_first_s, double done, double total);
+
 /// Progress with ETA on stderr: a line that rewrites itself on a terminal, else a line every 30 s or so.
 /// Quiet prints nothing. Costs a clock read per call.
 class Progress {
@@ -53,6 +57,7 @@ class Progress {
   void print(double done, const std::string& detail, bool last);
   std::string what_;
   double total_, started_s_, printed_s_ = -1e9;
+  double first_done_ = 0, first_s_ = -1;  ///< at the first update
   bool quiet_, terminal_, finished_ = false;
 };
 

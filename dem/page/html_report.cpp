@@ -5,10 +5,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <regex>
 
 #include "dem/base/constants.h"
 #include "dem/base/files/text_file.h"
@@ -21,11 +21,28 @@ namespace granrad {
 
 namespace {
 
-/// "12.3 ± 0.4", "+1.2 %", "1e-3": what stays on one line, at the right.
+/// "12.3 ± 0.4", "+1.2 %", "1e-3", but not "1/m" or "2 * x": what stays on one line, at the right.
 bool is_number(const std::string& cell) {
-  const std::size_t sign = cell.starts_with('+') || cell.starts_with('-') ? 1 : 0;
-  constexpr std::size_t longest = 26;
-  return cell.size() > sign && std::isdigit(static_cast<unsigned char>(cell[sign])) && cell.size() <= longest;
+  static const std::regex number(R"([-+]?\d+(\.\d+)?([eE][-+]?\d+)?( ± [\d.eE+-]+)?( %)?)");
+  return std::regex_match(cell, number);
+}
+
+using Rows = std::vector<std::vector<std::string>>;
+
+/// Columns of numbers, with at most short words between them ("never").
+std::vector<bool> number_columns(std::size_t columns, const Rows& rows) {
+  constexpr std::size_t short_word = 8;
+  std::vector<bool> numeric(columns, false);
+  for (std::size_t k = 0; k < columns; ++k) {
+    bool some = false, all = true;
+    for (const auto& row : rows) {
+      if (k >= row.size()) continue;
+      some = some || is_number(row[k]);
+      all = all && (is_number(row[k]) || row[k].size() <= short_word);
+    }
+    numeric[k] = some && all;
+  }
+  return numeric;
 }
 
 /// A long name may be broken behind its parts.
@@ -39,23 +56,12 @@ std::string breakable(const std::string& text) {
   return out;
 }
 
-std::string cells(const std::vector<std::string>& row, const char* tag) {
+/// Numbers stand at the right, on one line, and the head of their column above them.
+std::string cells(const std::vector<std::string>& row, const char* tag, const std::vector<bool>& numeric) {
   std::string out = "<tr>";
-  for (const auto& cell : row)
-    out += is_number(cell) ? fmt::format("<{0} class='n'>{1}</{0}>", tag, escape_html(cell))
-                           : fmt::format("<{0}>{1}</{0}>", tag, breakable(cell));
-  return fmt::format("{}</tr>\n", out);
-}
-
-/// Of a column whose cells are numbers, the header stands at the right as well.
-std::string header_cells(const std::vector<std::string>& header,
-                         const std::vector<std::vector<std::string>>& rows) {
-  std::string out = "<tr>";
-  for (std::size_t k = 0; k < header.size(); ++k) {
-    const bool numbers = std::any_of(rows.begin(), rows.end(),
-                                     [k](const auto& row) { return k < row.size() && is_number(row[k]); });
-    out += fmt::format("<th{}>{}</th>", numbers ? " class='n'" : "", breakable(header[k]));
-  }
+  for (std::size_t k = 0; k < row.size(); ++k)
+    out += fmt::format("<{0}{1}>{2}</{0}>", tag, k < numeric.size() && numeric[k] ? " class='n'" : "",
+                       is_number(row[k]) ? escape_html(row[k]) : breakable(row[k]));
   return fmt::format("{}</tr>\n", out);
 }
 
@@ -147,9 +153,10 @@ void HtmlReport::tiles(const std::vector<Tile>& tiles) {
 void HtmlReport::table(const std::vector<std::string>& header,
                        const std::vector<std::vector<std::string>>& rows) {
   end_charts();
+  const auto numeric = number_columns(header.size(), rows);
   body_ +=
-      fmt::format("<div class='scroll'><table>\n<thead>{}</thead>\n<tbody>\n", header_cells(header, rows));
-  for (const auto& row : rows) body_ += cells(row, "td");
+      fmt::format("<div class='scroll'><table>\n<thead>{}</thead>\n<tbody>\n", cells(header, "th", numeric));
+  for (const auto& row : rows) body_ += cells(row, "td", numeric);
   body_ += "</tbody></table></div>\n";
 }
 

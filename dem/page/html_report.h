@@ -14,6 +14,7 @@ struct Series {
   std::string label;
   std::vector<double> x, y, error{};
   bool points = false;  ///< markers instead of a line
+  bool joined = false;  ///< markers on a thin line
   bool steps = false;   ///< each value holds until the next x
   bool filled = false;  ///< the area below is shaded
   int colour = -1;      ///< number of its colour, so that one thing has one colour everywhere; -1: its place

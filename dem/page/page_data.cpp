@@ -66,6 +66,7 @@ std::string chart_json(const Chart& chart) {
                       {"y", numbers(s.y)},
                       {"error", numbers(s.error)},
                       {"points", s.points},
+                      {"joined", s.joined},
                       {"steps", s.steps},
                       {"filled", s.filled},
                       {"colour", s.colour}});

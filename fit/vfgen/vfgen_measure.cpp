@@ -40,7 +40,8 @@ void write_page(const std::filesystem::path& file, const MeasureCommand& command
     tiles.push_back(tile("exchange factor F", "", exchange->factor.value, exchange->factor.error));
   page.tiles(tiles);
   page.paragraph(fmt::format(
-      "{} particles, solid fraction {:.4f} by the points that fell into the void. Errors are one standard error.",
+      "{} particles. Solid fraction {:.4f} between the outermost centres, by the points that fell into spheres. Errors are "
+      "one standard error.",
       particles, extinction.solid_fraction_void));
   std::vector<std::vector<std::string>> rows;
   const auto row = [&](const char* what, const Estimate& e, const char* unit) {

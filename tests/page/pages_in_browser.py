@@ -1,7 +1,8 @@
 """Pages of the programs, opened in headless Chromium at three widths: no script fails, every figure is drawn, nothing is
 cut off at the side and no texts overlap; printed, too, and in the dark. Usage: pages_in_browser.py BIN SOURCE
 Meant to catch: a missing bracket in page.js; a canvas of no height; a table wider than the page (planted: cells that are
-never broken); letters of the dark on white paper.
+never broken); letters of the dark on white paper; a bed that is drawn as high as on the screen and as narrow as the
+paper, a long name of an axis, a page that begins with how to read it (each seen on these pages before it was mended).
 """
 import pathlib
 import re
@@ -29,6 +30,18 @@ addEventListener('load', () => setTimeout(() => {
   if (root.scrollWidth > root.clientWidth + 1) faults.push('wider than the window by ' + (root.scrollWidth - root.clientWidth));
   for (const table of document.querySelectorAll('.scroll'))
     if (table.scrollWidth > table.clientWidth + 1) faults.push('cut off by ' + (table.scrollWidth - table.clientWidth) + ': ' + table.textContent.trim().slice(0, 30));
+  for (const canvas of document.querySelectorAll('.bed > canvas'))
+    if (Math.abs(canvas.clientWidth * canvas.height / canvas.clientHeight / canvas.width - 1) > 0.02) faults.push('the bed is stretched');
+  for (const figure of document.querySelectorAll('figure.chart')) {
+    const chart = JSON.parse(figure.querySelector('script').textContent), brush = document.createElement('canvas').getContext('2d');
+    brush.font = '13px system-ui, sans-serif';
+    if (brush.measureText(chart.y_label).width > figure.granrad.plot().height) faults.push('cut off: ' + chart.y_label);
+  }
+  let first = document.querySelector('h1').nextElementSibling;
+  if (first.tagName === 'H2') first = first.nextElementSibling;
+  if (!/verdict|tiles/.test(first.className)) faults.push('does not begin with what it came to');
+  for (const cell of document.querySelectorAll('td.n'))
+    if (/[a-df-zA-DF-Z*/]/.test(cell.textContent) && cell.textContent.length > 8) faults.push('no number: ' + cell.textContent);
   if (!/command|computed by/.test(document.querySelector('footer').textContent)) faults.push('says not where it comes from');
   const texts = [...document.querySelectorAll('h1, h2, p, .tile b, .tile span, figcaption, td, th, .tools > *')]
     .filter(e => e.textContent.trim()).map(e => [e, e.getBoundingClientRect()]).filter(([, r]) => r.width && r.height);

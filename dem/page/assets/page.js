@@ -109,6 +109,7 @@
     out += `<text transform="translate(12,${box.y + box.h / 2}) rotate(-90)" text-anchor="middle">${escape_xml(chart.y_label)}</text>`;
     shown.forEach((points, s) => {
       const c = colour_of(chart.series, s);
+      if (chart.series[s].joined) out += `<polyline fill="none" stroke="${c}" points="${points.map(p => px(p[0]) + "," + py(p[1])).join(" ")}"/>`;
       if (chart.series[s].points) for (const p of points) out += `<circle cx="${px(p[0])}" cy="${py(p[1])}" r="3" fill="${c}"/>`;
       else if (points.length) out += `<polyline fill="none" stroke="${c}" stroke-width="1.8" points="${points.map(p => px(p[0]) + "," + py(p[1])).join(" ")}"/>`;
       for (const p of points) if (p[2] > 0 && chart.series[s].points) out += `<path stroke="${c}" d="M${px(p[0])} ${py(p[1] - p[2])}V${py(p[1] + p[2])}"/>`;
@@ -152,8 +153,8 @@
         scales: {x: {time: false, distr: logs.x ? 3 : 1}, y: {distr: logs.y ? 3 : 1, range: logs.y ? undefined : with_bars}},
         axes: [axis(chart.x_label, logs.x), y_axis],
         series: [{label: chart.x_label, value: (u, v) => number_text(v)}, ...chart.series.map((s, k) => ({
-          label: s.label, stroke: colour_of(chart.series, k), width: s.points ? 0 : 2, spanGaps: true,
-          fill: s.filled ? colour_of(chart.series, k) + "22" : undefined, paths: s.points ? () => null : s.steps ? uPlot.paths.stepped({align: 1}) : undefined,
+          label: s.label, stroke: colour_of(chart.series, k), width: s.joined ? 1 : s.points ? 0 : 2, spanGaps: true,
+          fill: s.filled ? colour_of(chart.series, k) + "22" : undefined, paths: s.points && !s.joined ? () => null : s.steps ? uPlot.paths.stepped({align: 1}) : undefined,
           points: {show: s.points || s.x.length < 2, size: s.x.length > 500 ? 3 : 7, fill: colour_of(chart.series, k)},
           value: (u, v) => number_text(v)}))],
         legend: {live: true}, cursor: {drag: {x: true, y: true, uni: 20}},
