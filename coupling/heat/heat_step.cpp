@@ -45,6 +45,24 @@ HeatPaths collect_heats(const Bed& bed, const Conductances& conductances, const 
   return {solid.value(), gas.value(), radiation.value()};
 }
 
+/// The parts of them by contacts and by gas, kept in the bed for those who look.
+void keep_parts(Bed& bed, const Conductances& conductances, const std::vector<double>& T) {
+  bed.solid_heat_W.assign(bed.size(), 0.0);
+  bed.gas_heat_W.assign(bed.size(), 0.0);
+  for (const auto& g : conductances.particles) {
+    const double difference = T[g.j] - T[g.i];
+    bed.solid_heat_W[g.i] += g.solid_W_K * difference;
+    bed.solid_heat_W[g.j] -= g.solid_W_K * difference;
+    bed.gas_heat_W[g.i] += g.gas_W_K * difference;
+    bed.gas_heat_W[g.j] -= g.gas_W_K * difference;
+  }
+  for (const auto& g : conductances.walls) {
+    const double difference = bed.walls[g.wall].temperature_K - T[g.i];
+    bed.solid_heat_W[g.i] += g.solid_W_K * difference;
+    bed.gas_heat_W[g.i] += g.gas_W_K * difference;
+  }
+}
+
 }  // namespace
 
 double conduction_step_limit_s(const Bed& bed, const Conductances& conductances) {
@@ -103,6 +121,7 @@ HeatPaths advance_temperatures(Bed& bed, const Conductances& conductances, doubl
         fmt::format("the largest allowed is {:.4g} s", limit)));
   std::vector<double> heat_W(bed.size(), 0.0);
   HeatPaths received = collect_heats(bed, conductances, from_K, heat_W);
+  keep_parts(bed, conductances, from_K);
   for (std::size_t i = 0; i < bed.size(); ++i) {
     double& T = bed.temperature_K[i];
     T += dt_s * heat_W[i] / heat_capacity_J_K(bed, i);

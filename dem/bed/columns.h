@@ -50,6 +50,8 @@ void for_each_column(Visit&& visit) {
   visit(BedColumn<double>{
       "temperature_K", "temperature", {"temperature"}, "K", positive, &Bed::temperature_K, 300, 1});
   visit(BedColumn<double>{"radiative_heat_W", "q_rad", {"q_rad"}, "W", real, &Bed::radiative_heat_W, 0, 1});
+  visit(BedColumn<double>{"solid_heat_W", "q_ss", {"q_ss"}, "W", real, &Bed::solid_heat_W, 0, 3});
+  visit(BedColumn<double>{"gas_heat_W", "q_sfs", {"q_sfs"}, "W", real, &Bed::gas_heat_W, 0, 3});
 }
 
 }  // namespace granrad

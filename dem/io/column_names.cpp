@@ -35,6 +35,8 @@ const std::vector<std::pair<Quantity, Words>>& exact_names() {
       {material, {"material"}},
       {type, {"type"}},
       {q_rad, {"q_rad"}},
+      {q_ss, {"q_ss"}},
+      {q_sfs, {"q_sfs"}},
   };
   return all;
 }
@@ -50,6 +52,8 @@ const std::vector<std::pair<Quantity, Words>>& plain_names() {
       {material, {"material", "materialid"}},
       {type, {"type", "atomtype", "materialtype", "particletype"}},
       {q_rad, {"qrad"}},
+      {q_ss, {"qss"}},
+      {q_sfs, {"qsfs"}},
   };
   return all;
 }

@@ -24,6 +24,8 @@ enum class Quantity {
   material,
   type,
   q_rad,
+  q_ss,
+  q_sfs,
   count
 };
 

@@ -121,6 +121,8 @@ void ParticleTable::add(std::size_t line, const std::vector<double>& values) {
   bed.add(position, velocity, r, read(temperature, 300), static_cast<std::int32_t>(number));
   bed.angular_velocity_rad_s.back() = {read(omegax), read(omegay), read(omegaz)};
   bed.radiative_heat_W.back() = read(q_rad);
+  bed.solid_heat_W.back() = read(q_ss);
+  bed.gas_heat_W.back() = read(q_sfs);
   if (names_.has(id)) bed.id.back() = static_cast<std::int64_t>(read(id));
   line_.push_back(line);
 }
