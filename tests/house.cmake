@@ -32,3 +32,7 @@ add_test(NAME cli.OuterProjectLong COMMAND ${CMAKE_COMMAND} -E env ${CMAKE_CTEST
   --build-generator ${CMAKE_GENERATOR} --build-target two_spheres --build-options -DGRANRAD_SOURCE=${PROJECT_SOURCE_DIR}
   -DCMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER} --test-command ${PROJECT_BINARY_DIR}/outer_project/two_spheres)
 set_tests_properties(cli.OuterProjectLong PROPERTIES LABELS long TIMEOUT 3000)
+# the macro for ParaView, where it is installed
+add_test(NAME cli.ParaView COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/cli/paraview.py ${PROJECT_BINARY_DIR}/bin
+  ${PROJECT_SOURCE_DIR})
+set_tests_properties(cli.ParaView PROPERTIES LABELS cli TIMEOUT 300 SKIP_RETURN_CODE 77)

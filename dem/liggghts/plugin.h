@@ -11,7 +11,7 @@ extern "C" Engine* granrad_new_liggghts_engine(const Vec3& gravity_m_s2, double 
 
 /// Why there is none.
 inline std::string liggghts_absent() {
-  return "is not built, or not installed beside this program; install libliggghts-dev and libopenmpi-dev and configure "
+  return "is not installed beside this program; install the package granrad-liggghts, or libliggghts-dev and libopenmpi-dev and configure "
          "again, or use \"native\"";
 }
 

@@ -104,10 +104,11 @@ void join_ranks() {
   if (!first) fall_silent();
   const auto file = plugin_file("granrad_mpi");
   if (file.empty())
-    throw InputError(advised(fmt::format("started {} times by mpirun, and built without MPI: each copy would "
-                                         "compute the same case",
-                                         copies),
-                             "start it once; or install libopenmpi-dev and build again"));
+    throw InputError(advised(
+        fmt::format("started {} times by mpirun, and without the plug-in granrad_mpi: each copy would "
+                    "compute the same case",
+                    copies),
+        "start it once; or install the package granrad-mpi, or libopenmpi-dev and build again"));
   using Join = const RankFunctions* (*)();
   functions = reinterpret_cast<Join>(plugin_function(file, "granrad_join_ranks"))();
   if (!functions)
