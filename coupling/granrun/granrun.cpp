@@ -107,10 +107,13 @@ void add_render(CLI::App& app, Arguments& a, Body& body) {
 }
 
 void add_new(CLI::App& app, Body& body) {
-  auto* starter = app.add_subcommand("new", "copy an example scene with what it needs");
+  auto* starter = app.add_subcommand("new", "copy an example scene or study with what it needs");
   const auto file = std::make_shared<std::string>(), example = std::make_shared<std::string>();
   starter->add_option("FILE", *file, "the new scene")->required();
-  starter->add_option("--from", *example, "plug, hopper, frozen, or any scene in share/granrad/scenes")
+  starter
+      ->add_option(
+          "--from", *example,
+          "plug, hopper, frozen, dump (with an STL, two materials), period, validate, sweep (a study), or any in share/granrad")
       ->default_val("plug");
   starter->callback([&body, file, example] { body = [=] { return new_scene(*file, *example); }; });
 }

@@ -22,7 +22,12 @@ namespace {
 
 /// Short names of the examples most will want.
 const std::pair<const char*, const char*> short_names[] = {
-    {"plug", "plug_phi025"}, {"hopper", "moving_bed_4x4"}, {"frozen", "static_phi025"}};
+    {"plug", "plug_phi025"},    {"hopper", "moving_bed_4x4"},    {"frozen", "static_phi025"},
+    {"dump", "dump_in_hopper"}, {"period", "slab_simple_cubic"}, {"validate", "paper_static"},
+    {"sweep", "plug_sweep"}};
+
+/// Folders of the installed data that hold examples: scenes, and studies of them.
+constexpr const char* homes[] = {"scenes", "studies"};
 
 std::vector<std::string> examples(const fs::path& folder) {
   std::vector<std::string> names;
@@ -40,10 +45,14 @@ fs::path example_file(const std::string& asked) {
   std::string name = asked;
   for (const auto& [brief, full] : short_names)
     if (name == brief) name = full;
-  const fs::path file = data / "scenes" / (name + ".toml");
-  if (fs::is_regular_file(file)) return file;
-  auto names = examples(data / "scenes");
+  std::vector<std::string> names;
   for (const auto& [brief, full] : short_names) names.push_back(brief);
+  for (const char* home : homes) {
+    const fs::path file = data / home / (name + ".toml");
+    if (fs::is_regular_file(file)) return file;
+    const auto more = examples(data / home);
+    names.insert(names.end(), more.begin(), more.end());
+  }
   const std::string meant = closest_word(asked, names);
   throw InputError(fmt::format("--from = {} (no such example); {}", asked,
                                meant.empty() ? fmt::format("try one of {}", fmt::join(names, ", "))
@@ -56,40 +65,64 @@ std::string text_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-}  // namespace
+/// A text, and the files it names.
+struct Copied {
+  std::string text;
+  std::vector<fs::path> files;
+};
 
-int new_scene(const fs::path& file, const std::string& example) {
-  const fs::path from = example_file(example);
-  const fs::path folder = fs::absolute(file).parent_path();
-  if (fs::exists(file))
-    throw InputError(advised(fmt::format("{}: exists already", file.string()), "choose another name"));
-  std::string text = text_of(from), out;
-  // Only texts in quotes that name a file beside the example are files.
-  static const std::regex quoted_text("\"([^\"\\n]+)\"");
-  std::vector<fs::path> copied;
+/// Only texts in quotes that name a file beside the example are files; the copy names them beside itself.
+Copied with_files_beside(const fs::path& from) {
+  const std::string text = text_of(from);
+  static const std::regex quoted_text("\"([^\"\n]+)\"");
+  Copied copied;
   auto rest = text.cbegin();
   for (std::smatch match; std::regex_search(rest, text.cend(), match, quoted_text); rest = match[0].second) {
     const fs::path named = from.parent_path() / match[1].str();
-    out.append(rest, match[1].first);
+    copied.text.append(rest, match[1].first);
     const bool is_file = fs::is_regular_file(named);
-    out += is_file ? named.filename().string() : match[1].str();
-    out += '"';
-    if (is_file) copied.push_back(named.lexically_normal());
+    copied.text += is_file ? named.filename().string() : match[1].str();
+    copied.text += '"';
+    if (is_file) copied.files.push_back(named.lexically_normal());
   }
-  out.append(rest, text.cend());
-  fs::create_directories(folder);
-  for (const auto& source : copied) {
-    const fs::path target = folder / source.filename();
-    if (!fs::exists(target))
-      write_text_file(target, text_of(source));
-    else if (text_of(target) != text_of(source))
+  copied.text.append(rest, text.cend());
+  return copied;
+}
+
+/// Everything an example needs, by the name it gets: its own text first, then the files it names, and what those name.
+std::vector<std::pair<std::string, std::string>> gather(const fs::path& from, const std::string& as) {
+  const Copied copied = with_files_beside(from);
+  std::vector<std::pair<std::string, std::string>> all{{as, copied.text}};
+  for (const auto& file : copied.files) {
+    const std::string name = file.filename();
+    const auto more = file.extension() == ".toml" ? gather(file, name) : decltype(all){{name, text_of(file)}};
+    for (const auto& one : more)
+      if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
+  }
+  return all;
+}
+
+}  // namespace
+
+int new_scene(const fs::path& file, const std::string& example) {
+  const fs::path from = example_file(example), folder = fs::absolute(file).parent_path();
+  if (fs::exists(file))
+    throw InputError(advised(fmt::format("{}: exists already", file.string()), "choose another name"));
+  const auto all = gather(from, file.filename());
+  for (std::size_t k = 1; k < all.size(); ++k)
+    if (const fs::path target = folder / all[k].first; fs::exists(target) && text_of(target) != all[k].second)
       throw InputError(
           advised(fmt::format("{}: exists already and differs", target.string()), "choose another folder"));
-  }
-  write_text_file(file, out);
+  fs::create_directories(folder);
+  for (const auto& [name, text] : all)
+    if (!fs::exists(folder / name)) write_text_file(folder / name, text);
   fmt::print("{}  from {}\n", file.string(), from.string());
-  for (const auto& source : copied) fmt::print("{}\n", (file.parent_path() / source.filename()).string());
-  fmt::print("\ngranrun check {0}\ngranrun run {0} -o out\n", file.string());
+  for (std::size_t k = 1; k < all.size(); ++k)
+    fmt::print("{}\n", (file.parent_path() / all[k].first).string());
+  if (from.parent_path().filename() == "studies")
+    fmt::print("\ngranrun study {} -o out\n", file.string());
+  else
+    fmt::print("\ngranrun check {0}\ngranrun run {0} -o out\n", file.string());
   return exit_ok;
 }
 

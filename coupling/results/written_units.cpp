@@ -16,7 +16,11 @@ namespace {
 /// Where a scene says how it writes a quantity: table (as a prefix) and key, the first that has a unit counts.
 std::vector<std::pair<std::string, std::string>> keys_of(const std::string& si_unit) {
   if (si_unit == "kg/s") return {{"feed", "mass_flow_kg_s"}, {"feed", "rate_kg_s"}};
-  if (si_unit == "K") return {{"particles", "temperature_K"}, {"walls", "temperature_K"}};
+  if (si_unit == "K")
+    return {{"particles", "temperature_K"},
+            {"walls", "temperature_K"},
+            {"polygon", "temperature_K"},
+            {"mesh", "temperature_K"}};
   if (si_unit == "m/s") return {{"feed", "velocity_m_s"}};
   if (si_unit == "s") return {{"scene", "end_time_s"}};
   return {};
@@ -26,10 +30,10 @@ std::vector<std::pair<std::string, std::string>> keys_of(const std::string& si_u
 /// it is no text.
 std::string text_of(const std::string& document, const std::string& table, const std::string& key) {
   std::istringstream lines(document);
-  const std::regex value(key + R"(\s*=\s*['"]([^'"]*)['"])");
+  const std::regex value(R"(\s*)" + key + R"(\s*=\s*['"]([^'"]*)['"])"), header(R"(\s*\[+([\w.]+).*)");
   bool inside = false;
   for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with("[")) inside = line.starts_with("[" + table);
+    if (std::smatch found; std::regex_match(line, found, header)) inside = found[1].str().starts_with(table);
     std::smatch found;
     if (inside && std::regex_match(line, found, value)) return found[1];
   }

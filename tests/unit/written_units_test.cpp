@@ -45,4 +45,7 @@ TEST(WrittenUnits, OfTheFirstWallWhereParticlesHaveNone) {
                    "K")
           .name,
       "degC");
+  const Case mesh =
+      written("[[mesh]]\nname = 'w'\n\n    [mesh.solid.heaters]\n    temperature_K = '500 degC'\n");
+  EXPECT_EQ(written_unit(mesh, "K").name, "degC");
 }
