@@ -1,7 +1,8 @@
 """What README and docs say is so: every file they name exists, every command and every Python block they show runs, and
 the references made of the programs are up to date. Usage: run_docs.py BIN SOURCE [PYTHONPATH]
-Meant to catch: a link to a page that is not there; an option that does not exist; a renamed key in scene.md.
+Planted, seen to fail: a definition of equations.md taken out. Meant to catch: a link to a page that is not there; an option that does not exist; a renamed key in scene.md.
 """
+import csv
 import json
 import os
 import pathlib
@@ -65,10 +66,19 @@ def run_python(folder):
 
 
 def check_promises(folder):
-    """The tutorial of the heat exchanger says 97 +- 5 W/m2K for its first 0.2 s."""
+    """Numbers that the tutorials tell, within their errors."""
     results = json.loads((folder / "exchanger/out/run.json").read_text())["results"]["means"]
     if not 92 <= results["h_wp_W_m2K"] <= 102:
         faults.append(f"tutorial_exchanger.md: h = {results['h_wp_W_m2K']}")
+    with open(folder / "exchanger/sweep/study.csv") as table:
+        h = {row["case"]: float(row["h_wp_W_m2K"]) for row in csv.DictReader(table)}
+    for case, told in (("phi-0.07_eps-0.4", 20), ("phi-0.25_eps-0.4", 47), ("phi-0.43_eps-0.4", 97), ("phi-0.07_eps-1", 52), ("phi-0.25_eps-1", 99), ("phi-0.43_eps-1", 152)):
+        if abs(h[case] / told - 1) > 0.04:
+            faults.append(f"tutorial_exchanger.md: {case}: h = {h[case]}")
+    dump = json.loads((folder / "dump/out/results.json").read_text())
+    for name, told in (("wedge.heaters", 10.6), ("surroundings", -2.3)):
+        if abs(dump["walls"][name]["Q_W"]["mean"] / told - 1) > 0.03:
+            faults.append(f"tutorial_dump.md: {name} gives {dump['walls'][name]['Q_W']}")
 
 
 def check_versions():
@@ -84,6 +94,20 @@ def check_versions():
                 faults.append(f"{page.name}: a package of version {named}")
 
 
+def check_definitions(folder):
+    """Every quantity of history.csv, walls.csv and results.json is defined in the page of equations, and nothing else is."""
+    page = (SOURCE / "docs/equations.md").read_text()
+    defined = set(re.findall(r"`(\w+)`", page[page.index("## Results, defined"):]))
+    case = folder / "exchanger/out"
+    names = {name for table in ("history.csv", "walls.csv") for name in (case / table).read_text().splitlines()[0].split(",")}
+    results = json.loads((case / "results.json").read_text())
+    of_files = {"format", "format_version", "scene", "radiation"}
+    names |= set(results) - of_files | set(results["window"]) | set(results["means"])
+    names |= {key for entries in (results["means"], results["walls"]) for entry in entries.values() for key in entry}
+    faults.extend(f"equations.md: {name} has no definition" for name in sorted(names - defined))
+    faults.extend(f"equations.md: {name} is in no file" for name in sorted(defined - names - {"q_ss", "q_sfs", "q_rad", "note"}))
+
+
 def check_references():
     for page, command in (("scene.md", ["granrun", "keys"]), ("study_keys.md", ["granrun", "keys", "study"]), ("tables.md", ["granrun", "keys", "table"]), ("generate.md", ["vfgen", "keys"])):
         made = subprocess.run([BIN / command[0], *command[1:]], capture_output=True, text=True, check=True).stdout
@@ -97,6 +121,7 @@ check_references()
 with tempfile.TemporaryDirectory() as name:
     folder = run_commands(pathlib.Path(name))
     check_promises(folder)
+    check_definitions(folder)
     run_python(folder)
 print("\n".join(faults) or "all true")
 sys.exit(bool(faults))
