@@ -36,6 +36,11 @@ void bind_errors(py::module_& module) {
                                                  py::make_tuple(base, py::handle(PyExc_ArithmeticError)));
   static py::exception<IoError> io(module, "IoError", py::make_tuple(base, py::handle(PyExc_OSError)));
   static py::exception<ThresholdMissed> missed(module, "ThresholdMissed", base);
+  base.attr("__doc__") = "What the library reports; its text says what is wrong and what to try.";
+  input.attr("__doc__") = "What was given is wrong: every problem, one a line. A ValueError.";
+  numerical.attr("__doc__") = "A computation has no right result. An ArithmeticError.";
+  io.attr("__doc__") = "A file cannot be read or written. An OSError.";
+  missed.attr("__doc__") = "A threshold that was asked for is missed.";
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);

@@ -10,10 +10,10 @@ NumericalError (an ArithmeticError), IoError (an OSError), ThresholdMissed; all 
 """
 from ._granrad import (Correlation, GranradError, InputError, IoError, NumericalError, ThresholdMissed, __version__,
                        data_folder, exact_two_sphere, git_sha)
-from .cases import Case
+from .cases import Case, read_study
 from .exchange import ViewFactors, fit, read_view_factors, trace
 from .simulations import Simulation, heats
 
 __all__ = ["Case", "Correlation", "GranradError", "InputError", "IoError", "NumericalError", "Simulation",
            "ThresholdMissed", "ViewFactors", "data_folder", "exact_two_sphere", "fit", "git_sha", "heats",
-           "read_view_factors", "trace"]
+           "read_study", "read_view_factors", "trace"]

@@ -8,6 +8,23 @@ import numpy as np
 from . import _granrad
 
 
+def _table(file):
+    if not file.is_file():
+        raise _granrad.IoError(f"{file}: cannot be read")
+    try:
+        import pandas
+    except ImportError:
+        return np.genfromtxt(file, delimiter=",", names=True, dtype=None, encoding="utf-8")
+    return pandas.read_csv(file)
+
+
+def read_study(folder):
+    """Table of `granrun study` in its folder, one row a point: case, status, the varied keys, means and their errors
+    (NAME_stderr), SI units. A pandas.DataFrame, or a structured array without pandas."""
+    folder = Path(folder)
+    return _table(next((folder / name for name in ("study.csv", "sweep.csv") if (folder / name).is_file()), folder / "study.csv"))
+
+
 class Case:
     """The folder of a run: Case("out/plug")."""
 
@@ -16,23 +33,13 @@ class Case:
         if not (self.folder / "scene.toml").is_file():
             raise _granrad.InputError(f"{folder}: is not a case of granrun (it has no scene.toml)")
 
-    def _table(self, name):
-        file = self.folder / name
-        if not file.is_file():
-            raise _granrad.IoError(f"{file}: cannot be read")
-        try:
-            import pandas
-        except ImportError:
-            return np.genfromtxt(file, delimiter=",", names=True, dtype=None, encoding="utf-8")
-        return pandas.read_csv(file)
-
     def history(self):
         """history.csv, one row an output: a pandas.DataFrame, or a structured array without pandas. SI units."""
-        return self._table("history.csv")
+        return _table(self.folder / "history.csv")
 
     def walls(self):
         """walls.csv, one row an output and wall: heats received from each wall by each way, W."""
-        return self._table("walls.csv")
+        return _table(self.folder / "walls.csv")
 
     def results(self):
         """Means with their standard errors, as a dict."""
@@ -46,7 +53,8 @@ class Case:
         return sorted((self.folder / "frames").glob("*.hdf"))
 
     def frame(self, number=-1):
-        """One frame as a dict of arrays: position_m [N, 3], and every column by its name (id, radius, temperature, ...)."""
+        """One frame as a dict of arrays: position_m [N, 3], and every column by its name: id, material, radius (m),
+        temperature (K), v (m/s), omega (rad/s), q_rad, q_ss, q_sfs (W received by radiation, contacts, gas)."""
         with h5py.File(self.frames()[number]) as f:
             data = f["VTKHDF/PointData"]
             out = {name: data[name][:] for name in data}

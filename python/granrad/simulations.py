@@ -56,7 +56,10 @@ class Simulation:
             file = os.path.join(folder, "scene.toml")
             with open(file, "w", encoding="utf-8") as out:
                 out.write(_scene_text(scene))
-            self._of = _granrad.CompiledSimulation(file, settings, threads)
+            try:
+                self._of = _granrad.CompiledSimulation(file, settings, threads)
+            except _granrad.InputError as error:  # the file is nobody's
+                raise _granrad.InputError(str(error).replace(file, "scene")) from None
 
     def run(self, until_s=float("inf")):
         """Goes on until a time or the end; the rows of the history since, one dict an output interval."""

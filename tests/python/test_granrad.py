@@ -120,3 +120,23 @@ def test_the_schema_knows_every_example():
         jsonschema.validate(tomllib.loads(scene.read_text()), schema)
     with pytest.raises(jsonschema.ValidationError):
         jsonschema.validate({"scene": {"end_time_s": 1, "nmae": "x"}}, schema)
+
+
+def test_a_scene_of_a_dict_is_called_scene_and_errors_say_what_they_are():
+    with pytest.raises(granrad.InputError) as raised:
+        granrad.Simulation({"scene": {"ends": 1}})
+    assert "/tmp" not in str(raised.value) and str(raised.value).startswith("scene")
+    for error in (granrad.GranradError, granrad.InputError, granrad.IoError, granrad.NumericalError, granrad.ThresholdMissed):
+        assert "Unspecified" not in error.__doc__
+
+
+def test_the_table_of_a_study_is_read(tmp_path):
+    (tmp_path / "study.csv").write_text("case,phi,h_wp_W_m2K,h_wp_W_m2K_stderr\na,0.07,52,0.3\nb,0.25,99,0.3\n")
+    table = granrad.read_study(tmp_path)
+    assert list(table["phi"]) == [0.07, 0.25] and table["h_wp_W_m2K_stderr"][1] == 0.3
+    with pytest.raises(granrad.IoError):
+        granrad.read_study(tmp_path / "none")
+
+
+def test_every_public_name_has_a_docstring():
+    assert all(getattr(granrad, name).__doc__ for name in granrad.__all__)
