@@ -14,6 +14,7 @@
 #include "coupling/simulation/simulation.h"
 #include "dem/base/error.h"
 #include "dem/base/files/text_file.h"
+#include "dem/base/program.h"
 #include "dem/bed/solid_fraction.h"
 
 namespace granrad {
@@ -80,10 +81,9 @@ void judge_flow(const Case& c, Verdict& verdict) {
 
 /// A collision may begin and end between two heat steps.
 const char* how_contacts_are_seen(EngineKind engine) {
-  if (engine == EngineKind::native) return ",\n    integrated over every DEM step";
-  return engine == EngineKind::liggghts
-             ? ",\n    as they stand at each heat step (short collisions are sampled)"
-             : "";
+  if (engine == EngineKind::native) return ", integrated over every DEM step";
+  return engine == EngineKind::liggghts ? ", as they stand at each heat step (short collisions are sampled)"
+                                        : "";
 }
 
 void judge_conduction(const Case& c, Verdict& verdict) {
@@ -203,14 +203,14 @@ int check_case(const Case& c, const RunOptions& options, const CheckOptions& ask
   judge_radiation(c, verdict);
   judge_walls(c, simulation.bed(), verdict);
   fmt::print("modelled\n");
-  for (const auto& text : verdict.modelled) fmt::print("  {}\n", text);
+  for (const auto& text : verdict.modelled) print_message("  " + text, stdout);
   fmt::print("left out\n");
-  for (const auto& text : verdict.left_out) fmt::print("  {}\n", text);
+  for (const auto& text : verdict.left_out) print_message("  " + text, stdout);
   print_limits(simulation);
-  for (const auto& note : simulation.notes()) fmt::print("  note: {}\n", note);
+  for (const auto& note : simulation.notes()) print_message("  note: " + note, stdout);
   if (const auto note = end_note(simulation.plan(), c.flow.end_time_s); !note.empty())
-    fmt::print("  note: {}\n", note);
-  for (const auto& note : case_notes(c, simulation.bed())) fmt::print("  note: {}\n", note);
+    print_message("  note: " + note, stdout);
+  for (const auto& note : case_notes(c, simulation.bed())) print_message("  note: " + note, stdout);
   fmt::print("\n{} particles at time 0, solid fraction {:.4f} in the region\n", simulation.bed().size(),
              solid_fraction(simulation.bed(), c.flow.region));
   print_forecast(c, simulation, options, asked);

@@ -66,12 +66,13 @@ std::string broken(const std::string& text, std::size_t width) {
 
 }  // namespace
 
-void print_message(const std::string& text) {
+void print_message(const std::string& text, std::FILE* where) {
   winsize window{};
-  if (isatty(2) && ioctl(2, TIOCGWINSZ, &window) == 0)
-    fmt::print(stderr, "{}", broken(text, window.ws_col > 20 ? window.ws_col : 80));
+  constexpr std::size_t narrowest = 20, usual = 80;
+  if (isatty(fileno(where)) && ioctl(fileno(where), TIOCGWINSZ, &window) == 0)
+    fmt::print(where, "{}", broken(text, window.ws_col > narrowest ? window.ws_col : usual));
   else
-    fmt::print(stderr, "{}\n", text);
+    fmt::print(where, "{}\n", text);
 }
 
 void keep_freed_memory() {

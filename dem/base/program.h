@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdio>
 #include <functional>
 #include <string>
 
@@ -11,8 +12,8 @@ enum class Verbosity { quiet, normal, verbose };
 const char* program_version();
 const char* program_git_sha();
 
-/// A message or a note on stderr: on a terminal within its width, broken at spaces; elsewhere as it is, one a line.
-void print_message(const std::string& text);
+/// A message or a note: on a terminal within its width, broken at spaces; elsewhere as it is, one a line.
+void print_message(const std::string& text, std::FILE* where = stderr);
 
 /// Runs a program's body and turns its errors into messages on stderr and the exit codes of error.h;
 /// an interrupt caught by `install_signal_handlers` ends as 128 + its number: 129 (SIGHUP), 130 (SIGINT), 143

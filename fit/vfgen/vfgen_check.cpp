@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "dem/base/error.h"
+#include "dem/base/program.h"
 #include "fit/vfgen/check_table.h"
 #include "fit/vfgen/vfgen_commands.h"
 
@@ -33,9 +34,10 @@ int run_check(const std::filesystem::path& table, Verbosity verbosity) {
   for (const auto& finding : findings) {
     if (finding.problem) ++problems;
     if (finding.problem || verbosity != Verbosity::quiet)
-      fmt::print("{} {}\n", finding.problem ? "problem" : "note   ", finding.text);
+      print_message(fmt::format("{} {}", finding.problem ? "problem" : "note   ", finding.text), stdout);
   }
-  fmt::print("{}: {}\n", table.string(), problems == 0 ? "sound" : fmt::format("{} problems", problems));
+  fmt::print("{}: {}\n", table.string(),
+             problems == 0 ? "sound" : fmt::format("{} problem{}", problems, problems == 1 ? "" : "s"));
   return problems == 0 ? exit_ok : exit_bad_input;
 }
 
