@@ -13,6 +13,7 @@
 #include "dem/base/files/data_folder.h"
 #include "dem/base/files/text_file.h"
 #include "dem/base/program.h"
+#include "dem/base/stated_number.h"
 #include "dem/bed/solid_fraction.h"
 #include "dem/bed/wall_shape.h"
 #include "dem/io/snapshot.h"
@@ -149,14 +150,19 @@ void check_folder(const fs::path& folder) {
 void print_rows(const ValidatedBed& bed) {
   fmt::print("{}: {} particles, solid fraction {:.3f}; errors against {}\n", bed.name, bed.particle_count,
              bed.solid_fraction, bed.tracks.front().label);
-  fmt::print("  {:<34}{:>9}{:>9}{:>10}{:>10}{:>10}{:>12}{:>12}\n", "source", "rays", "time, s", "T, K",
-             "T err, %", "q err, %", "q_i rms, %", "CPU s");
+  constexpr std::size_t label_columns = 23;
+  fmt::print("  {:<23}{:>8}{:>6}{:>9}{:>15}{:>9}{:>8}\n", "source", "rays", "t, s", "T, K", "flux off, %",
+             "rms, %", "CPU s");
   for (const auto& track : bed.tracks)
     for (std::size_t k = 0; k < track.at.size(); ++k) {
       const auto with = compare(track.at[k], bed.tracks.front().at[k]);
-      fmt::print("  {:<34}{:>9.0f}{:>9g}{:>10.2f}{:>+10.3f}{:>+10.2f}{:>12.2f}{:>12.3g}\n", track.label,
-                 track.rays, track.at[k].time_s, track.at[k].mean_temperature_K, with.temperature_error_pct,
-                 with.flux_error_pct, with.own_rms_pct, track.seconds_per_update);
+      const bool fits = track.label.size() <= label_columns;
+      if (!fits) fmt::print("  {}\n", track.label);
+      fmt::print("  {:<23}{:>8.0f}{:>6g}{:>9.2f}{:>15}{:>9.3g}{:>8.3g}\n", fits ? track.label : "",
+                 track.rays, track.at[k].time_s, track.at[k].mean_temperature_K,
+                 (with.flux_error_pct > 0 ? "+" : "") +
+                     stated(with.flux_error_pct, with.flux_noise_pct).text(" +- "),
+                 with.own_rms_pct, track.seconds_per_update);
     }
 }
 

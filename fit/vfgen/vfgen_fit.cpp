@@ -19,14 +19,13 @@ std::string joined(const std::vector<std::filesystem::path>& files) {
 }
 
 void print_rows(const std::vector<RowFit>& rows) {
-  fmt::print("{:>14} {:>9} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "solid fraction", "snapshots",
-             "pp RMSE", "scatter", "held out", "left out", "pw RMSE", "scatter", "row sum-1");
-  const auto known = [](double rmse) { return rmse > 0 ? fmt::format("{:.3e}", rmse) : std::string("-"); };
+  fmt::print("fraction  beds {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6}\n", "pp RMSE", "scatter",
+             "held out", "left out", "pw RMSE", "scatter", "row-1");
+  const auto known = [](double rmse) { return rmse > 0 ? fmt::format("{:.2e}", rmse) : std::string("-"); };
   for (const auto& row : rows)
-    fmt::print("{:14.4f} {:9} {:10.3e} {:10.3e} {:>10} {:>10} {:10.3e} {:10.3e} {:+10.4f}\n",
-               row.row.solid_fraction, row.origins.size(), row.pp.rmse, row.pp.scatter,
-               known(row.pp.held_out_rmse), known(row.pp.left_out_rmse), row.pw.rmse, row.pw.scatter,
-               row.row.statistics.closure_mean);
+    fmt::print("{:8.4f} {:5} {:8.2e} {:8.2e} {:>8} {:>8} {:8.2e} {:8.2e} {:+6.3f}\n", row.row.solid_fraction,
+               row.origins.size(), row.pp.rmse, row.pp.scatter, known(row.pp.held_out_rmse),
+               known(row.pp.left_out_rmse), row.pw.rmse, row.pw.scatter, row.row.statistics.closure_mean);
 }
 
 /// Verbose: every coefficient with its error.
