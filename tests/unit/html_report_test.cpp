@@ -77,6 +77,23 @@ TEST(HtmlReport, IsOneSelfContainedFile) {
   EXPECT_EQ(files, 1u);  // no temporary left behind
 }
 
+// Planted, seen to fail: whatever begins with a digit taken for a number.
+TEST(HtmlReport, ColumnsOfNumbersStandAtTheRightWithTheirWords) {
+  const TemporaryFolder folder;
+  HtmlReport report("t");
+  report.table({"value", "unit", "formula", "until"}, {{"12.3 ± 0.4", "1/m", "48 * x^2", "1.6e-3"},
+                                                       {"-1e-3", "m", "2 + x", "never"},
+                                                       {"+1.2 %", "", "3 d", ""}});
+  report.write(folder / "page.html");
+  const auto text = text_of(folder / "page.html");
+  for (const char* right :
+       {"<th class='n'>value</th>", "<td class='n'>12.3 ± 0.4</td>", "<td class='n'>+1.2 %</td>",
+        "<th class='n'>until</th>", "<td class='n'>never</td>"})
+    EXPECT_NE(text.find(right), std::string::npos) << right;
+  for (const char* left : {"<td>1/m</td>", "<td>48 * x^2</td>", "<td>3 d</td>", "<th>unit</th>"})
+    EXPECT_NE(text.find(left), std::string::npos) << left;
+}
+
 TEST(HtmlReport, WithoutFiguresCarriesNoScript) {
   const TemporaryFolder folder;
   HtmlReport report("t");
