@@ -189,7 +189,7 @@ void add_results(HtmlReport& page, const Results& results) {
   }
   page.heading(fmt::format("Means from {:g} s to {:g} s", results.from_s, results.to_s));
   page.paragraph(results.steady ? "Steady: neither the mean temperature nor the heat drifts over this window."
-                                : "N" + results.note.substr(1) + ".");  // "not steady: ..."
+                                : fmt::format("N{}.", results.note.substr(1)));  // "not steady: ..."
   page.table({"quantity", "mean", "standard error", "meaning"}, rows);
   add_walls(page, results);
 }

@@ -141,7 +141,7 @@ void print_limits(const Simulation& simulation) {
     row("Rayleigh time", limits.rayleigh_time_s, "step allowed: 0.3 of it");
     row(fmt::format("Hertz time at {:.3g} m/s", limits.impact_speed_m_s), limits.hertz_time_s,
         "step allowed: 0.1 of it");
-    row("DEM step", plan.step_s, "largest allowed " + seconds(limits.dem_s));
+    row("DEM step", plan.step_s, fmt::format("largest allowed {}", seconds(limits.dem_s)));
   }
   row("heat step", plan.tick_s,
       fmt::format("conduction allows {} at time 0", seconds(simulation.conduction_limit_s())));
@@ -203,14 +203,15 @@ int check_case(const Case& c, const RunOptions& options, const CheckOptions& ask
   judge_radiation(c, verdict);
   judge_walls(c, simulation.bed(), verdict);
   fmt::print("modelled\n");
-  for (const auto& text : verdict.modelled) print_message("  " + text, stdout);
+  for (const auto& text : verdict.modelled) print_message(fmt::format("  {}", text), stdout);
   fmt::print("left out\n");
-  for (const auto& text : verdict.left_out) print_message("  " + text, stdout);
+  for (const auto& text : verdict.left_out) print_message(fmt::format("  {}", text), stdout);
   print_limits(simulation);
-  for (const auto& note : simulation.notes()) print_message("  note: " + note, stdout);
+  for (const auto& note : simulation.notes()) print_message(fmt::format("  note: {}", note), stdout);
   if (const auto note = end_note(simulation.plan(), c.flow.end_time_s); !note.empty())
-    print_message("  note: " + note, stdout);
-  for (const auto& note : case_notes(c, simulation.bed())) print_message("  note: " + note, stdout);
+    print_message(fmt::format("  note: {}", note), stdout);
+  for (const auto& note : case_notes(c, simulation.bed()))
+    print_message(fmt::format("  note: {}", note), stdout);
   fmt::print("\n{} particles at time 0, solid fraction {:.4f} in the region\n", simulation.bed().size(),
              solid_fraction(simulation.bed(), c.flow.region));
   print_forecast(c, simulation, options, asked);

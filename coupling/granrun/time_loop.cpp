@@ -139,7 +139,7 @@ int follow(Simulation& simulation, const Case& c, const CaseFolder& folder, cons
   on_first_rank([&] {
     history.emplace(folder.history(), simulation.last_row_s());
     walls.emplace(folder.wall_history(), simulation.last_row_s());
-    if (!history->note().empty()) print_message("note: " + history->note());
+    if (!history->note().empty()) print_message(fmt::format("note: {}", history->note()));
   });
   if (simulation.bed().step == 0) save(simulation, folder);
   const auto& plan = simulation.plan();

@@ -30,7 +30,7 @@ std::vector<std::pair<std::string, std::string>> keys_of(const std::string& si_u
 /// it is no text.
 std::string text_of(const std::string& document, const std::string& table, const std::string& key) {
   std::istringstream lines(document);
-  const std::regex value(R"(\s*)" + key + R"(\s*=\s*['"]([^'"]*)['"])"), header(R"(\s*\[+([\w.]+).*)");
+  const std::regex value(fmt::format(R"(\s*{}\s*=\s*['"]([^'"]*)['"])", key)), header(R"(\s*\[+([\w.]+).*)");
   bool inside = false;
   for (std::string line; std::getline(lines, line);) {
     if (std::smatch found; std::regex_match(line, found, header)) inside = found[1].str().starts_with(table);
@@ -49,8 +49,8 @@ PrintUnit written_unit(const Case& c, const std::string& si_unit) {
     if (begin == std::string::npos) continue;
     const std::string name = text.substr(begin);
     std::string why_not;
-    const auto zero = quantity_in("0 " + name, si_unit.c_str(), why_not),
-               one = quantity_in("1 " + name, si_unit.c_str(), why_not);
+    const auto zero = quantity_in(fmt::format("0 {}", name), si_unit.c_str(), why_not),
+               one = quantity_in(fmt::format("1 {}", name), si_unit.c_str(), why_not);
     if (zero && one) return {name, *one - *zero, *zero};
   }
   return {si_unit, 1, 0};

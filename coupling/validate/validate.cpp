@@ -106,7 +106,7 @@ NamedBed bed_from(const Case& c, const fs::path& snapshot) {
 
 std::vector<NamedBed> choose_beds(const Case& c) {
   std::vector<NamedBed> beds;
-  for (const auto& note : c.flow.notes) print_message("note: " + note);
+  for (const auto& note : c.flow.notes) print_message(fmt::format("note: {}", note));
   for (const auto& file : c.heat.validate.snapshots) beds.push_back(bed_from(c, file));
   if (beds.empty()) beds.push_back({c.flow.name, Flow(c.flow).first_bed(), c});
   for (const auto& named : beds)
@@ -160,8 +160,8 @@ void print_rows(const ValidatedBed& bed) {
       if (!fits) fmt::print("  {}\n", track.label);
       fmt::print("  {:<23}{:>8.0f}{:>6g}{:>9.2f}{:>15}{:>9.3g}{:>8.3g}\n", fits ? track.label : "",
                  track.rays, track.at[k].time_s, track.at[k].mean_temperature_K,
-                 (with.flux_error_pct > 0 ? "+" : "") +
-                     stated(with.flux_error_pct, with.flux_noise_pct).text(" +- "),
+                 fmt::format("{}{}", with.flux_error_pct > 0 ? "+" : "",
+                             stated(with.flux_error_pct, with.flux_noise_pct).text(" +- ")),
                  with.own_rms_pct, track.seconds_per_update);
     }
 }

@@ -57,7 +57,7 @@ std::string broken(const std::string& text, std::size_t width) {
       const auto at = line.rfind(' ', width);
       if (at == std::string::npos || line.find_first_not_of(' ') >= at) break;  // one long word
       out += line.substr(0, at) + "\n";
-      line = "    " + line.substr(at + 1);
+      line = std::string(4, ' ').append(line, at + 1);
     }
     out += line + "\n";
   }

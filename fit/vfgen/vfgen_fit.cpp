@@ -19,8 +19,8 @@ std::string joined(const std::vector<std::filesystem::path>& files) {
 }
 
 void print_rows(const std::vector<RowFit>& rows) {
-  fmt::print("fraction  beds {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6}\n", "pp RMSE", "scatter",
-             "held out", "left out", "pw RMSE", "scatter", "row-1");
+  fmt::print("fraction  beds {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6}\n", "pp RMSE", "scatter", "held out",
+             "left out", "pw RMSE", "scatter", "row-1");
   const auto known = [](double rmse) { return rmse > 0 ? fmt::format("{:.2e}", rmse) : std::string("-"); };
   for (const auto& row : rows)
     fmt::print("{:8.4f} {:5} {:8.2e} {:8.2e} {:>8} {:>8} {:8.2e} {:8.2e} {:+6.3f}\n", row.row.solid_fraction,
@@ -76,7 +76,7 @@ int run_fit(const FitCommand& command, Verbosity verbosity) {
   if (!command.report.empty()) write_fit_report(command.report, fit.table, fit.rows);
   for (const auto& row : fit.rows)
     if (const auto warning = snapshot_warning(row.row.solid_fraction, row.origins.size()); !warning.empty())
-      print_message("warning: " + warning);
+      print_message(fmt::format("warning: {}", warning));
   if (verbosity == Verbosity::quiet) return exit_ok;
   print_rows(fit.rows);
   if (verbosity == Verbosity::verbose) print_coefficients(fit.table);

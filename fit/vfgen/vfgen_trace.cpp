@@ -98,7 +98,7 @@ std::vector<SnapshotEnclosure> read_all(const TraceCommand& command, const std::
 
 /// What a user should know of a snapshot before it is traced.
 void remark_on(const std::string& snapshot, const SnapshotEnclosure& read, Verbosity verbosity) {
-  if (!read.note.empty()) print_message("note: " + read.note);
+  if (!read.note.empty()) print_message(fmt::format("note: {}", read.note));
   if (read.left_out > 0)
     fmt::print(stderr, "{}: {} particles with their centre outside the box were left out\n", snapshot,
                read.left_out);
