@@ -215,20 +215,6 @@ void scale_rows(ExchangeAreas& x, ClosureReport& report) {
   }
 }
 
-/// Of F_ij - F_ji where areas are equal.
-double reciprocity_rms(const ExchangeAreas& x) {
-  double squares = 0, pairs = 0;
-  for (std::size_t i = 0; i < x.area_m2.size(); ++i)
-    for (std::int64_t k = x.pattern.row_begin[i]; k < x.pattern.row_begin[i + 1]; ++k) {
-      const auto j = static_cast<std::size_t>(x.pattern.column[k]);
-      if (j <= i || !closes(x, i) || !closes(x, j)) continue;
-      const double other = x.value[find(x.pattern, j, static_cast<std::int32_t>(i))];
-      squares += std::pow(x.value[k] - other, 2) / (x.area_m2[i] * x.area_m2[j]);
-      pairs += 1;
-    }
-  return pairs > 0 ? std::sqrt(squares / pairs) : 0;
-}
-
 /// Gives the surroundings the row that the others' columns imply.
 void reflect_open(ExchangeAreas& x) {
   const std::size_t open = x.area_m2.size() - 1;
@@ -263,6 +249,20 @@ double reciprocity_chi2(const ExchangeAreas& one_way) {
   return report.reciprocity_chi2;
 }
 
+double reciprocity_rms(const ExchangeAreas& x, std::size_t surfaces) {
+  double squares = 0, pairs = 0;
+  for (std::size_t i = 0; i < surfaces; ++i)
+    for (std::int64_t k = x.pattern.row_begin[i]; k < x.pattern.row_begin[i + 1]; ++k) {
+      const auto j = static_cast<std::size_t>(x.pattern.column[k]);
+      if (j <= i || j >= surfaces || !closes(x, i) || !closes(x, j)) continue;
+      const double other = x.value[find(x.pattern, j, static_cast<std::int32_t>(i))];
+      if (x.value[k] == 0 && other == 0) continue;
+      squares += std::pow(x.value[k] - other, 2) / (x.area_m2[i] * x.area_m2[j]);
+      pairs += 1;
+    }
+  return pairs > 0 ? std::sqrt(squares / pairs) : 0;
+}
+
 ExchangeAreas close(const ExchangeAreas& estimate, Closure closure, ClosureReport& report) {
   report = {};
   for (const double value : estimate.value)
@@ -279,7 +279,6 @@ ExchangeAreas close(const ExchangeAreas& estimate, Closure closure, ClosureRepor
     scale_symmetric(closed, report);
   } else {
     scale_rows(closed, report);
-    report.reciprocity_rms = reciprocity_rms(closed);
   }
   reflect_open(closed);
   return closed;

@@ -103,6 +103,10 @@ ReplicateSamples replicate_samples(const HitCounts& counts);
 /// it).
 ExchangeAreas close(const ExchangeAreas& estimate, Closure closure, ClosureReport& report);
 
+/// Root mean square of (X_ij - X_ji) / sqrt(A_i A_j), which is F_ij - F_ji where areas are equal, over the pairs among
+/// the first `surfaces` that exchange anything: 0 once closed reciprocally.
+double reciprocity_rms(const ExchangeAreas& x, std::size_t surfaces);
+
 /// Rows and columns of the surfaces in `kept` (ascending), renumbered: what the others (excluded walls) exchanged
 /// is lost from the rows. To be called before closure.
 ExchangeAreas restricted(const ExchangeAreas& all, const std::vector<std::int32_t>& kept);

@@ -46,7 +46,7 @@ struct RadiativeHeat {
   std::int64_t rays = 0;                    ///< traced for this update
   std::int64_t lost_rays = 0;               ///< of them that met the back of a wall or did not end
   double closure_correction = 0;            ///< largest row correction, 0 when nothing was closed
-  double reciprocity_rms = 0;               ///< of the closed view factors (ClosureReport)
+  double reciprocity_rms = 0;               ///< of the view factors between particles, once closed
 };
 
 /// Turns an enclosure into the radiative heat of each surface. One of the two virtual seams.

@@ -89,7 +89,8 @@ RadiativeHeat RadiositySource::net_heat(const Enclosure& enclosure, const Radiat
   RadiativeHeat result;
   result.lost_rays = std::exchange(lost_rays_, 0);
   result.closure_correction = report_.largest_correction;
-  result.reciprocity_rms = report_.reciprocity_rms;
+  if (closure_ == Closure::row_sum)
+    result.reciprocity_rms = reciprocity_rms(areas_, enclosure.sphere_count());
   result.heat_W.assign(enclosure.surface_count(), 0);
   const bool with_errors = !solved.standard_error_W.empty();
   if (with_errors) result.standard_error_W.assign(enclosure.surface_count(), 0);
