@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # ./do demo | test | test-long | paper [--quick] | validate [--quick] | gates | tidy | format | docs | package |
-#      bench [trace|dem|heat|case|front|scale|load|forecast] [--quick | --full]
+#      bench [trace|dem|heat|case|front|scale|replicas|load|forecast] [--quick | --full]
 # Each command takes a bare Debian 12 all the way: missing packages, configuration, build, run.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
@@ -52,7 +52,8 @@ usage() {
   bench       speed against error, side by side with LIGGGHTS, LAMMPS, plain Embree and dense LU;
               case: the whole moving bed of the paper beside LIGGGHTS' flow alone;
               front: every exchange source with a ladder of rays (--quick: 3 min; --full: four emissivities);
-              scale: the parts of a run on one and two ranks, and a model of more
+              scale: the parts of a run on one and two ranks, and a model of more (--full: a million spheres);
+              replicas: time and memory of large settled beds (--full: ten million spheres, 19 GB);
               forecast: what granrun check foresees beside what a run takes
   hard-cases  makes docs/hard-cases.md: every exchange source on the cases that break others
 EOF
@@ -235,20 +236,20 @@ EOF
     which=() options=()
     for word in "$@"; do
       case $word in
-        trace | dem | heat | case | front | scale | load | forecast) which+=("$word") ;;
+        trace | dem | heat | case | front | scale | replicas | load | forecast) which+=("$word") ;;
         --quick | --full) options=("$word") ;;
         *) usage >&2; exit 2 ;;
       esac
     done
     ((${#which[@]})) || which=(trace dem heat case front scale load forecast)
-    [[ ${options[*]} != --full || ${which[*]} =~ ^(front|scale)$ ]] || { echo "--full is for front and scale" >&2; exit 2; }
+    [[ ${options[*]} != --full || ${which[*]} =~ ^(front|scale|replicas)$ ]] || { echo "--full is for front, scale and replicas" >&2; exit 2; }
     set_up
     install_missing liggghts lammps
     for name in "${which[@]}"; do
-      if [[ $name == scale ]]; then
+      if [[ $name == scale || $name == replicas ]]; then
         build granrun
-        say "bench scale"
-        /usr/bin/python3 "$root/tests/bench/scale.py" "${options[@]}" "$build/bin/granrun" "$build/bench"
+        say "bench $name"
+        /usr/bin/python3 "$root/tests/bench/$name.py" "${options[@]}" "$build/bin/granrun" "$build/bench"
         continue
       fi
       if [[ $name == load ]]; then

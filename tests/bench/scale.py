@@ -149,23 +149,25 @@ def print_model(rows, engine, out):
             out.writerow([kind, engine, ranks] + [f"{t[p]:.5g}" for p in PARTS] + [f"{total:.5g}", f"{efficiency:.4f}"])
 
 
-def print_cores(machine, one):
+def print_cores(machine, beds):
     """The native flow on the cores of one node, from one and two threads.
 
-    Threads have slabs along the longest axis. Pairs across a cut, a third of one of `side` layers, are worked on both sides;
-    what two threads do not share otherwise, waiting included, is taken to stay and to grow with log2 of the threads."""
-    side = round(one["spheres"] ** (1 / 3))
-    t1 = one["flow"]
-    t2 = machine.seconds(scene(side, "native", one["steps"], HEAT_STEPS, True, side**3), 1, threads=2)["flow"]
-    share = lambda threads: (1 + (threads - 1) / (3 * side)) / threads
-    repeated = max(0.0, (t2 - t1 * share(2)) / (1 - share(2)))
-    print(f"\nnative flow on cores of one node, {one['spheres']} spheres: two threads {t1 / t2:.2f} x one; a model of more")
-    print(f"{'threads':>8} {'seconds':>10} {'times one':>10} {'efficiency':>10}")
-    for threads in (1, 2, 4, 8, 16, 32, 64):
-        if side / threads < 1.5: break  # slabs of less than a layer and a half
-        grown = repeated * max(1.0, math.log2(threads)) if threads > 1 else repeated
-        t = t1 if threads == 1 else grown + (t1 - repeated) * share(threads)
-        print(f"{threads:>8} {t:>10.3g} {t1 / t:>10.2f} {t1 / t / threads:>10.2f}")
+    Threads have slabs along the longest axis. Pairs across a cut, a third of one of `side` layers, are worked on both sides.
+    What two threads do not share beside that is serial in the largest bed, a part of the step that stays; what it is more in
+    the smallest is waiting, a time a step that grows with log2 of the threads."""
+    def share(threads, side): return (1 + (threads - 1) / (3 * side)) / threads
+    lost, times = [], []
+    for one in beds:
+        side = round(one["spheres"] ** (1 / 3))
+        t2 = machine.seconds(scene(side, "native", one["steps"], HEAT_STEPS, True, side**3), 1, threads=2)["flow"]
+        times.append((side, one["flow"], t2))
+        lost.append(max(0.0, (t2 / one["flow"] - share(2, side)) / (1 - share(2, side))))
+    serial, wait_s = lost[-1], max(0.0, lost[0] - lost[-1]) * times[0][1] / beds[0]["steps"]
+    print(f"\nnative flow on the cores of one node: serial {100 * serial:.1f} %, waiting {1e6 * wait_s:.1f} us a step; a model")
+    for (side, t1, t2), one in zip(times, beds):
+        grown = {2**k: serial + (1 - serial) * share(2**k, side) + k * wait_s * one["steps"] / t1 for k in range(1, 7)}
+        print(f"{one['spheres']:>8} spheres: two threads {t1 / t2:.2f} x one; " +
+              "  ".join(f"{n}: {1 / t:.1f}" for n, t in grown.items() if side / n >= 1.5))
 
 
 def main():
@@ -192,8 +194,7 @@ def main():
         out.writerow(["scaling", "engine", "ranks"] + PARTS + ["total", "efficiency"])
         for engine in ("liggghts", "native"):
             print_model(rows, engine, out)
-    for row in rows:
-        if row["engine"] == "native" and row["ranks"] == 1: print_cores(machine, row)
+    print_cores(machine, [r for r in rows if r["engine"] == "native" and r["ranks"] == 1])
     for side in sides: (folder / f"bed_{side}.csv").unlink()
     print("\nThe model's assumptions: one rank a node with one thread, as measured; a network as fast as this machine's memory "
           f"but for {1e6 * NETWORK_DELAY_S:.0f} us a step; beds cut evenly; native flow and conduction, temperatures and output as on one rank.")
