@@ -143,7 +143,7 @@ TEST_F(RanksLong, TheLastFrameDoesNotDependOnRanksLong) {
   expect_one_case(scratch, " --set radiation.source=none", {2});
 }
 
-// Ranks share the search of a recorded flow's contacts. Planted: conductances joined in the order of the ranks.
+// Ranks share the search of a recorded flow's contacts.
 TEST_F(Ranks, HeatOnARecordedFlowDoesNotDependOnRanks) {
   const auto flow = scratch.root / "flow";
   const auto scene = scratch.write("plug.toml", small_plug);
