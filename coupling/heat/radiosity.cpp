@@ -70,7 +70,7 @@ struct Eigen::internal::generic_product_impl<granrad::ExchangeOperator, Rhs, Eig
   template <class Destination>
   static void scaleAndAddTo(Destination& out, const granrad::ExchangeOperator& op, const Rhs& x,
                             const double& scale) {
-    const granrad::Vector in = x;
+    const Eigen::Ref<const granrad::Vector> in(x);
     out += scale * (in - op.left.cwiseProduct(granrad::multiply(op.areas, op.right.cwiseProduct(in))));
   }
 };
@@ -135,7 +135,8 @@ Vector radiosities(const ExchangeAreas& areas, const Vector& power, const Vector
 }
 
 void collect_heats(const ExchangeAreas& areas, const Vector& radiosity, RadiosityResult& result) {
-  const auto& [row, column] = areas.pattern;
+  const std::vector<std::int64_t>& row = areas.pattern.row_begin;
+  const std::vector<std::int32_t>& column = areas.pattern.column;
   const Eigen::Index count = radiosity.size();
   result.heat_W.assign(count, 0);
   if (!areas.variance.empty()) result.standard_error_W.assign(count, 0);
