@@ -2,8 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "coupling/results/results.h"
@@ -13,6 +15,7 @@
 #include "dem/base/files/text_file.h"
 #include "dem/io/snapshot.h"
 #include "fit/correlation/correlation.h"
+#include "raytrace/rays/view_factor_file.h"
 
 namespace granrad {
 
@@ -102,6 +105,34 @@ Quantities of_json(const fs::path& file) {
   return all;
 }
 
+/// Of each wall, the sum of its view factors to particles: y_min:to_particles, over the snapshots traced.
+Quantities of_traces(const fs::path& folder) {
+  std::map<std::string, std::vector<double>> sums;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() != ".h5") continue;
+    const ViewFactorFile traced = read_view_factors(entry.path());
+    const auto factor = closed_factors(traced.closed).value;
+    const auto& pattern = traced.closed.pattern;
+    const std::size_t spheres = traced.enclosure.sphere_count();
+    for (std::size_t w = 0; w < traced.enclosure.walls.size(); ++w) {
+      double sum = 0;
+      for (auto k = pattern.row_begin[spheres + w]; k < pattern.row_begin[spheres + w + 1]; ++k)
+        if (static_cast<std::size_t>(pattern.column[k]) < spheres) sum += factor[k];
+      sums[traced.enclosure.walls[w].name + ":to_particles"].push_back(sum);
+    }
+  }
+  Quantities all;
+  for (auto& [name, values] : sums) {
+    std::sort(values.begin(), values.end());  // whatever the order of the files
+    double sum = 0, squares = 0;
+    for (const double value : values) sum += value, squares += value * value;
+    const auto n = static_cast<double>(values.size());
+    const double variance = std::max(0.0, squares / n - sum * sum / (n * n));
+    all[name] = {sum / n, n > 1 ? std::sqrt(variance / (n - 1)) : unknown};
+  }
+  return all;
+}
+
 /// RMSEs of a fitted table, the largest and by row: pp_rmse, pw_rmse, 0.43:pp_rmse.
 Quantities of_table(const fs::path& file) {
   Quantities all;
@@ -127,7 +158,7 @@ Quantities of_case(const StudyCase& one, const fs::path& folder) {
     case StudyKind::fit:
       return of_table(folder / "table.toml");
     case StudyKind::trace:
-      break;
+      return of_traces(folder);
   }
   return {};
 }

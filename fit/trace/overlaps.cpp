@@ -37,7 +37,8 @@ Overlaps find_overlaps(const Bed& bed, const std::vector<std::int32_t>& particle
   std::map<int, std::vector<std::int32_t>> members;
   for (const auto i : particles) members[order(i)].push_back(i);
   Overlaps overlaps;
-  for (const auto& [k, of_order] : members) {
+  for (const auto& [its_order, of_order] : members) {
+    const int k = its_order;  // captured below
     const double reach = 2 * std::ldexp(largest, -k);
     const CellGrid grid(points, of_order, reach, bed.box, bed.periodic);
     for (const auto i : particles) {

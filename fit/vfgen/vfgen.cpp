@@ -48,6 +48,7 @@ void add_curve(CLI::App& app, Body& body) {
 void add_measure(CLI::App& app, Body& body) {
   const auto command = std::make_shared<MeasureCommand>();
   const auto box = std::make_shared<std::string>();
+  const auto walls = std::make_shared<std::vector<std::string>>();
   auto& sub = *app.add_subcommand("measure",
                                   "Extinction, transmittance, mean free path and exchange factor of a bed");
   sub.add_option("SNAPSHOT", command->snapshot, "frame (.hdf), CSV or LIGGGHTS/LAMMPS text dump")->required();
@@ -64,15 +65,18 @@ void add_measure(CLI::App& app, Body& body) {
   sub.add_option("--box", *box, "walls: X,Y,Z in metres, corner at the origin or at :x0,y0,z0");
   sub.add_option("--radius", command->enclosure.radius_m, "radius in metres, for files without one")
       ->check(number_in(1e-12, 1e6));
-  sub.add_option("--walls", command->enclosure.stl, "STL file of walls, metres");
+  sub.add_option(
+      "--walls", *walls,
+      "STL file of walls in metres, or FILE:SCALE (hopper.stl:0.001 for millimetres); may be repeated");
   sub.add_option("--seed", command->seed, "of the random numbers")
       ->check(seed_number())
       ->capture_default_str();
   sub.add_option("--threads", command->threads, "0: all; results do not depend on it")
       ->check(CLI::Range(0, 4096));
-  sub.callback([&body, command, box] {
-    body = [command, box](Verbosity verbosity) {
+  sub.callback([&body, command, box, walls] {
+    body = [command, box, walls](Verbosity verbosity) {
       if (!box->empty()) command->enclosure.box = parse_box(*box);
+      for (const auto& text : *walls) command->enclosure.stl.push_back(parse_stl(text));
       return run_measure(*command, verbosity);
     };
   });

@@ -142,7 +142,9 @@ void fit_all(const GenerateSettings& settings, const fs::path& folder, const std
   std::vector<double> fractions;
   for (const auto& file : files) fractions.push_back(file.solid_fraction);
   const auto groups = grouped_by_solid_fraction(fractions);
-  for (const auto& [name, options] : settings.fits) {
+  for (const auto& [its_name, its_options] : settings.fits) {
+    const std::string& name = its_name;
+    const auto& options = its_options;  // captured below
     Progress progress("fitting " + name, 1, quiet);
     auto fit = fit_table(
         groups.size(), [&](std::size_t k) { return read_samples(files, groups[k], options.pp_cutoff); },

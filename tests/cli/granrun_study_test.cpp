@@ -283,6 +283,46 @@ TEST(GranrunStudy, ClaimsAndFitsAreJudgedAndSweepIsItsOldName) {
   EXPECT_NE(bad.err.find("claim 2"), std::string::npos) << bad.err;
 }
 
+// Planted: the factors of the first particle in place of the wall's; a mean of RMSEs for the largest.
+TEST(GranrunStudy, RunsAreTracedAndTheTracesFitted) {
+  SmallStudy study;
+  study.write("claims.csv",
+              "id,reference,uncertainty,ours\na,1,?,{traced/one:y_min:to_particles}\n"
+              "b,1,?,{table/all:pp_rmse}\nc,1,?,{table/all:pw_rmse}\n");
+  const auto outcome = study.run(
+      "[study]\n[[group]]\nname = \"flow\"\nscene = \"plug.toml\"\n[[group.case]]\nname = \"one\"\n"
+      "[[group]]\nname = \"traced\"\nkind = \"trace\"\noptions = [\"--rays\", \"500\"]\n"
+      "[[group.case]]\nname = \"one\"\nfrom = [\"flow/one\"]\n"
+      "[[group]]\nname = \"table\"\nkind = \"fit\"\noptions = [\"--form\", \"transmittance\"]\n"
+      "[[group.case]]\nname = \"all\"\nfrom = [\"traced/one\"]\n"
+      "[claims]\nfile = \"claims.csv\"\n");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto judged = read_csv(study.folder / "claims.csv", true);
+  const auto ours = judged.numbers("ours");
+
+  double sum = 0, files = 0;
+  for (const auto& entry : fs::directory_iterator(study.folder / "traced" / "one")) {
+    if (entry.path().extension() != ".h5") continue;
+    const auto csv = study.root / "e.csv";
+    const auto exported = granrad::cli::run(
+        study, "vfgen", "export -q --to csv " + entry.path().string() + " -o " + csv.string());
+    ASSERT_EQ(exported.code, 0) << exported.err;
+    for (const auto& row : rows(csv))
+      if (row.at("from_name") == "y_min" && row.at("to_name").rfind("particle_", 0) == 0)
+        sum += std::stod(row.at("factor"));
+    files += 1;
+  }
+  ASSERT_GT(files, 0);
+  EXPECT_NEAR(ours[0], sum / files, 1e-6 * sum);  // six digits are printed
+
+  const auto table = content(study.folder / "table" / "all" / "table.toml");
+  const auto stated = [&](const std::string& key) {
+    return std::stod(table.substr(table.find("\n" + key + " = ") + key.size() + 4));
+  };
+  EXPECT_NEAR(ours[1], stated("pp_rmse"), 1e-6 * ours[1]);
+  EXPECT_NEAR(ours[2], stated("pw_rmse"), 1e-6 * ours[2]);
+}
+
 TEST(GranrunStudy, AStudyThatIsWrittenWrongIsRefused) {
   SmallStudy study;
   const auto refused = [&](const std::string& text, const std::string& why) {

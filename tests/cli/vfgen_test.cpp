@@ -259,6 +259,24 @@ TEST_F(Vfgen, TellsHowAnStlFitsTogether) {
   EXPECT_EQ(granrad::read_view_factors(path("x.h5")).counts.leaked, 0);
 }
 
+// Planted: the text taken for the name of a file, as it was (exit 3).
+TEST_F(Vfgen, MeasureTakesMeshesInMillimetresToo) {
+  const auto metres = write("metres.stl", box_stl(false, false, false));
+  std::string small = box_stl(false, false, false);
+  for (const char* number : {"0.004", "0.01"})
+    for (std::size_t at = 0; (at = small.find(number, at)) != std::string::npos;)
+      small.replace(at, std::string(number).size(), number == std::string("0.01") ? "10" : "4");
+  const auto measured = [&](const std::string& walls) {
+    const auto done = vfgen("measure " + two_spheres() + " --walls " + walls + " -o " + path("m") + " -q");
+    EXPECT_EQ(done.code, 0) << done.text;
+    std::ifstream in(path("m") + "/measure.json");
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  const auto as_metres = measured(metres);
+  EXPECT_GT(as_metres.size(), 100u);
+  EXPECT_EQ(as_metres, measured(write("millimetres.stl", small) + ":0.001"));
+}
+
 // A minute of rays, interrupted after a second.
 TEST_F(Vfgen, InterruptLeavesNoFile) {
   // In the foreground timeout signals once; otherwise the group gets a second signal, which ends a program at
