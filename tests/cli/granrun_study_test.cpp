@@ -340,3 +340,29 @@ TEST(GranrunStudy, AStudyThatIsWrittenWrongIsRefused) {
   refused(two_cases + "[[probe]]\nname = \"a\"\nfrom_m = 2\nto_m = 1\n", "from < to");
   refused(two_cases + "[[case]]\nname = \"a\"\ncolour = 1\n", "unknown key 'colour'");
 }
+
+// Two studies in one folder share its cases: each case is computed by one of them, and both end well.
+// To plant: no lock on a case (both compute it, and one finds the folder in use).
+TEST(GranrunStudy, TwoAtOnceShareTheCases) {
+  SmallStudy study;
+  study.write("study.toml", two_cases);
+  const auto start = [&] {
+    return start_granrun({"study", study.file.string(), "-o", study.folder.string(), "--jobs", "2"});
+  };
+  const pid_t first = start(), second = start();
+  for (const pid_t one : {first, second}) {
+    int status = 0;
+    waitpid(one, &status, 0);
+    EXPECT_EQ(exit_code(status), 0);
+  }
+  const auto together = rows(study.folder / "study.csv");
+  ASSERT_EQ(together.size(), 2u);
+  for (const auto& row : together) EXPECT_EQ(row.at("status"), "finished");
+  const fs::path shared = study.folder;
+  study.folder = study.root / "alone";
+  ASSERT_EQ(study.run(two_cases).code, 0);
+  for (const auto& entry : fs::directory_iterator(study.folder))
+    if (entry.is_directory())
+      EXPECT_EQ(content(entry.path() / "history.csv"),
+                content(shared / entry.path().filename() / "history.csv"));
+}

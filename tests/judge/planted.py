@@ -2,7 +2,7 @@
 """Every oracle of the judge sees a wrong answer: answers of the runner are altered on their way, and the finding must be
 of the kind expected. Exit code 0: all were seen.
 
-planted.py JUDGE_RUNNER"""
+planted.py JUDGE_RUNNER [KIND...]"""
 import math
 import os
 import sys
@@ -16,7 +16,7 @@ import variants
 MOST_SCENES = 60  # in which an error must show
 HALF_AS_MUCH_AGAIN = 1.5
 VARIANTS = ("moved", "mirrored", "turned", "larger", "renumbered", "polygons", "reordered", "halves", "meshes", "doubled",
-            "opened", "paths", "embree", "lines", "shading")
+            "opened", "paths", "embree", "lines", "shading", "slid", "alone", "replayed", "unshuttered", "solids", "finer")
 
 
 class Altered(judge.Runner):
@@ -101,7 +101,7 @@ def main():
     blind = []
     judge.BY_PROGRAM = 10 ** 9
     with tempfile.TemporaryDirectory(dir="/dev/shm" if os.access("/dev/shm", os.W_OK) else None) as root:
-        for kind, where, alter in ERRORS:
+        for kind, where, alter in [e for e in ERRORS if not sys.argv[2:] or e[0] in sys.argv[2:]]:
             runner = Altered(os.path.abspath(sys.argv[1]), where, alter)
             suited = [s for s in range(1, 2000) if where not in VARIANTS or
                       where in [v[0] for v in variants.variants(scenes.generate(s))]][:MOST_SCENES]

@@ -127,7 +127,7 @@ def replayed(scene):
 
 def finer(scene):
     """A third of the step that the program chose, and heat at every step."""
-    step = scene["step_s"] / 3
+    step = scene.get("step_s", scene["every"]) / 3  # that of the first run, where there was one
     return "finer", changed(scene, dem=dict(scene["dem"], step_s=step), every_steps=1), 1, same_walls()
 
 
