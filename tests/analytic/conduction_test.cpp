@@ -239,7 +239,7 @@ TEST(Conduction, RefusesMaterialsItCannotUse) {
 }
 
 // The longest steps that are allowed, against the closed form: the difference of a pair goes with exp(-2 G t / (m c)).
-// To plant: heats of the start of each step (28 K of 700 K off after a time constant).
+// Planted, seen: heats of the start of each step (28 K of 700 K off after a time constant).
 TEST(Conduction, TheLongestStepsFollowTheExponential) {
   Bed bed = pair_at(7.95e-4);
   const auto g = conductances(bed, touching(7.95e-4), {});

@@ -361,8 +361,9 @@ TEST(GranrunStudy, TwoAtOnceShareTheCases) {
   const fs::path shared = study.folder;
   study.folder = study.root / "alone";
   ASSERT_EQ(study.run(two_cases).code, 0);
-  for (const auto& entry : fs::directory_iterator(study.folder))
-    if (entry.is_directory())
-      EXPECT_EQ(content(entry.path() / "history.csv"),
-                content(shared / entry.path().filename() / "history.csv"));
+  for (const auto& entry : fs::directory_iterator(study.folder)) {
+    if (!entry.is_directory()) continue;
+    EXPECT_EQ(content(entry.path() / "history.csv"),
+              content(shared / entry.path().filename() / "history.csv"));
+  }
 }

@@ -7,9 +7,9 @@
 // T^4). Conduction: a sphere that touches three faces gets three times what one face gives.
 //
 // Planted, seen: the covered part left in place (paths give the patch a hundredth of its heat); the later wall cut
-// instead of the earlier (the patch vanishes); a sheet of two sides traced without the normal of its start. Not yet
-// tried: contact planes not told apart (the sphere sinks to 0.63 of Hertz); near walls by wall, not by feature (a
-// corner conducts a third).
+// instead of the earlier (the patch vanishes); a sheet of two sides traced without the normal of its start; touches at
+// one point not told to be one (a seam heats twice, the contact counts twice); near walls by wall, not by feature (a corner
+// of one mesh conducts a third).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
