@@ -1,8 +1,8 @@
 // Requirement: the flow on LIGGGHTS runs on several ranks: spheres that meet across the ranks' parts of the domain move as
 // on one rank but for the order of sums, springs between parts survive the hand-over at every heat step, ranks without
 // spheres do no harm, the books close, and a case goes on with another number of ranks.
-// Planted: springs handed to the rank of one of the two spheres only, springs of ranks joined without looking whose they
-// are (ABedMovesAsOnOneRankLong).
+// Planted: springs handed to the rank of one of the two spheres only, springs left in the order of the ranks
+// (ABedMovesAsOnOneRankLong).
 #include <cmath>
 
 #include "coupling/simulation/history.h"
@@ -60,7 +60,8 @@ std::string packed_rows() {
   for (int k = 0; k < 160; ++k) {
     const double shift = 2e-6 * std::sin(3.0 * k), d = 7.992e-4;
     const auto at = [&](int n, double s) { return std::to_string(1e3 * (d * (n + 0.5) + s)) + "e-3,"; };
-    rows += at(k % 5, shift) + at(k / 5 % 4, -shift) + at(k / 20, shift) + "4e-4," +
+    const int place = k * 37 % 160;  // ids of each rank's spheres are scattered
+    rows += at(place % 5, shift) + at(place / 5 % 4, -shift) + at(place / 20, shift) + "4e-4," +
             std::to_string(300 + k % 7) + "," + std::to_string(0.05 * std::sin(k)) + "," +
             std::to_string(0.05 * std::cos(2 * k)) + "," + std::to_string(0.05 * std::sin(5 * k)) + "," +
             std::to_string(20 * std::sin(k)) + "," + std::to_string(20 * std::cos(k)) + ",5\n";
