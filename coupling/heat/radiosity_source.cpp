@@ -1,6 +1,9 @@
 #include "coupling/heat/radiosity_source.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "coupling/heat/crossing_error.h"
@@ -11,10 +14,15 @@ namespace granrad {
 
 namespace {
 
-std::vector<std::int32_t> surfaces_kept(const std::vector<char>& excluded) {
-  std::vector<std::int32_t> kept;
-  for (std::size_t s = 0; s < excluded.size(); ++s)
-    if (!excluded[s]) kept.push_back(static_cast<std::int32_t>(s));
+/// Surfaces, walls in patches, that are not excluded.
+std::vector<std::int32_t> surfaces_kept(const Enclosure& enclosure, const WallPatches& patches,
+                                        const std::vector<char>& excluded) {
+  const auto spheres = static_cast<std::int32_t>(enclosure.sphere_count());
+  std::vector<std::int32_t> kept(enclosure.sphere_count());
+  std::iota(kept.begin(), kept.end(), 0);
+  for (std::int32_t p = 0; p < patches.count(); ++p)
+    if (!excluded[static_cast<std::size_t>(patches.wall(p))]) kept.push_back(spheres + p);
+  kept.push_back(spheres + patches.count());
   return kept;
 }
 
@@ -49,16 +57,39 @@ double crossing_variance(const ExchangeAreas& areas, const std::vector<double>& 
 
 }  // namespace
 
-void RadiositySource::prepare(const Enclosure& enclosure, const std::vector<char>& excluded) {
-  auto kept = surfaces_kept(excluded);
-  if (prepared_ && kept == kept_ && same_geometry(enclosure, enclosure_)) return;
+RadiositySource::RadiositySource(Estimate of_whole_walls, Closure closure)
+    : estimate_([e = std::move(of_whole_walls)](const Enclosure& enclosure, const WallPatches&,
+                                                std::uint64_t key) { return e(enclosure, key); }),
+      closure_(closure) {}
+
+void RadiositySource::prepare(const Enclosure& enclosure, const RadiativeState& state) {
+  const std::size_t spheres = enclosure.sphere_count();
+  std::vector<char> excluded, reflects;
+  const bool cuts = cuts_walls_ && enclosure.periodic == std::array<bool, 3>{};
+  for (std::size_t s = spheres; s < enclosure.open_surface(); ++s) {
+    excluded.push_back(state.excluded[s]);
+    reflects.push_back(cuts && !state.excluded[s] && state.emissivity[s] < 1);
+  }
+  if (prepared_ && excluded == excluded_ && reflects == reflects_ && same_geometry(enclosure, enclosure_))
+    return;
   prepared_ = false;
   report_ = {};
-  ExchangeEstimate estimate = estimate_(enclosure, geometry_key(enclosure));
+  const bool any = std::find(reflects.begin(), reflects.end(), 1) != reflects.end();
+  const WallPatches patches(enclosure.walls, any ? patch_length_m(enclosure, reflects) : 0, reflects);
+  ExchangeEstimate estimate = estimate_(enclosure, patches, geometry_key(enclosure));
   lost_rays_ = estimate.lost_rays;
-  areas_ = close(restricted(estimate.areas, kept), closure_, report_);
-  replicates_ = restricted(std::move(estimate.replicates), kept, enclosure.surface_count());
-  kept_ = std::move(kept);
+  const auto kept = surfaces_kept(enclosure, patches, excluded);
+  areas_ = close(granrad::restricted(estimate.areas, kept), closure_, report_);
+  replicates_ = restricted(std::move(estimate.replicates), kept, spheres + patches.count() + 1);
+  surface_ = kept;
+  for (std::int32_t& s : surface_) {
+    const std::int32_t patch = s - static_cast<std::int32_t>(spheres);
+    if (patch >= 0)
+      s = static_cast<std::int32_t>(spheres) +
+          (patch < patches.count() ? patches.wall(patch) : static_cast<std::int32_t>(enclosure.walls.size()));
+  }
+  excluded_ = std::move(excluded);
+  reflects_ = std::move(reflects);
   enclosure_ = enclosure;
   prepared_ = true;
 }
@@ -74,10 +105,10 @@ double RadiositySource::wall_heat_error_W(const std::vector<double>& radiosity_W
 
 RadiativeHeat RadiositySource::net_heat(const Enclosure& enclosure, const RadiativeState& state,
                                         std::uint64_t /*update*/) {
-  prepare(enclosure, state.excluded);
+  prepare(enclosure, state);
   std::vector<double> power, emissivity;
   std::vector<char> gives;
-  for (const auto s : kept_) {
+  for (const auto s : surface_) {
     const auto surface = static_cast<std::size_t>(s);
     power.push_back(state.emissive_power_W_m2[surface]);
     emissivity.push_back(state.kept_share(surface) * state.emissivity[surface]);
@@ -94,9 +125,11 @@ RadiativeHeat RadiositySource::net_heat(const Enclosure& enclosure, const Radiat
   result.heat_W.assign(enclosure.surface_count(), 0);
   const bool with_errors = !solved.standard_error_W.empty();
   if (with_errors) result.standard_error_W.assign(enclosure.surface_count(), 0);
-  for (std::size_t k = 0; k < kept_.size(); ++k) {
-    result.heat_W[kept_[k]] = solved.heat_W[k];
-    if (with_errors) result.standard_error_W[kept_[k]] = solved.standard_error_W[k];
+  for (std::size_t k = 0; k < surface_.size(); ++k) {
+    const auto s = static_cast<std::size_t>(surface_[k]);
+    result.heat_W[s] += solved.heat_W[k];
+    if (with_errors)
+      result.standard_error_W[s] = std::hypot(result.standard_error_W[s], solved.standard_error_W[k]);
     if (gives[k]) result.isothermal_wall_heat_W -= solved.heat_W[k];
   }
   if (with_errors)

@@ -140,6 +140,9 @@ void check_order(TomlTable& table, RadiationKind kind, const Scene& scene) {
   for (const Wall& wall : scene.walls)
     if (wall.role == WallRole::excluded)
       table.problem("order", fmt::format("must be 0 (wall {} is excluded); make it adiabatic", wall.name));
+  if (table.has("wall_patches"))
+    table.problem("wall_patches",
+                  "is not used with order > 0 (all walls are in patches there); leave it out");
   if (table.has("closure"))
     table.problem("closure",
                   "nothing is closed with order > 0 (its moments close by themselves); leave it out");
@@ -210,6 +213,11 @@ RadiationSettings read_source(TomlTable table, const Scene& scene, const std::st
           {"reciprocal", "row_sum"}, "reciprocal") == "row_sum"
           ? Closure::row_sum
           : Closure::reciprocal;
+  settings.patches =
+      table.choice(
+          {"wall_patches",
+           "of adiabatic and grey flat walls, with embree, lines and shading: auto cuts them into patches with a radiosity each, whole gives each wall one"},
+          {"auto", "whole"}, "auto") == "auto";
   settings.seed = static_cast<std::uint64_t>(table.integer({"seed", "of the rays"}, 0, 1LL << 62, 1));
 
   if (table.has("table") && settings.kind != RadiationKind::correlation)
@@ -220,6 +228,12 @@ RadiationSettings read_source(TomlTable table, const Scene& scene, const std::st
     table.problem("wall_rows",
                   fmt::format("is not used by source = {}; leave it out or set source = \"correlation\"",
                               to_string(settings.kind)));
+  if (table.has("wall_patches") &&
+      (paths || settings.kind == RadiationKind::none || settings.kind == RadiationKind::correlation))
+    table.problem("wall_patches",
+                  fmt::format("is not used by source = {}; leave it out", to_string(settings.kind)));
+  if (table.has("wall_patches") && settings.closure == Closure::row_sum)
+    table.problem("wall_patches", "is not used with closure = \"row_sum\", the paper's; leave it out");
   if (settings.order > 0) check_order(table, settings.kind, scene);
   if (table.has("closure") && (paths || settings.kind == RadiationKind::none))
     table.problem("closure",

@@ -27,6 +27,8 @@ struct RadiationSettings {
   double every_s = 0;  ///< 0: chosen (see radiation_interval_s)
   Closure closure = Closure::reciprocal;
   int order = 0;  ///< lines only: of the spherical harmonics of each sphere's radiosity; 0: one radiosity
+  bool patches =
+      true;  ///< embree, lines, shading: walls that reflect are cut into patches, one radiosity each
   std::uint64_t seed = 1;
 };
 

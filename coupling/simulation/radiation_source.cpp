@@ -31,6 +31,17 @@ constexpr int wall_heat_replicates = 8;
 /// Share of the rays that may meet the back of a wall: rounding at edges. Each such ray is counted (lost_rays).
 constexpr double most_leaks = 1e-3;
 
+/// View factors with walls in patches, or whole where that is asked for or replicates the paper.
+std::unique_ptr<RadiositySource> radiosity_source(const RadiationSettings& settings,
+                                                  RadiositySource::PatchEstimate estimate) {
+  if (settings.patches && settings.closure == Closure::reciprocal)
+    return std::make_unique<RadiositySource>(std::move(estimate), settings.closure);
+  const auto whole = [e = std::move(estimate)](const Enclosure& enclosure, std::uint64_t key) {
+    return e(enclosure, WallPatches(enclosure.walls, 0, std::vector<char>(enclosure.walls.size(), 0)), key);
+  };
+  return std::make_unique<RadiositySource>(RadiositySource::Estimate(whole), settings.closure);
+}
+
 /// Before closure, which would share a defect out among the others.
 void require_sound(const Enclosure& enclosure, const HitCounts& counts) {
   const auto rays = std::accumulate(counts.launched.begin(), counts.launched.end(), std::int64_t{0});
@@ -43,15 +54,15 @@ void require_sound(const Enclosure& enclosure, const HitCounts& counts) {
                                  "look for bodies that reach into each other, or take source = paths"));
 }
 
-RadiositySource::Estimate embree_estimate(const RadiationSettings& settings, int threads) {
-  return [=](const Enclosure& enclosure, std::uint64_t update) {
+RadiositySource::PatchEstimate embree_estimate(const RadiationSettings& settings, int threads) {
+  return [=](const Enclosure& enclosure, const WallPatches& patches, std::uint64_t update) {
     TraceOptions options;
     options.rays_per_particle = settings.rays;
     options.seed = settings.seed + update;
     options.threads = threads;
     options.kept_replicates = wall_heat_replicates;
-    const HitCounts counts = trace_view_factors(enclosure, options);
-    require_sound(enclosure, counts);
+    const HitCounts counts = trace_view_factors(enclosure, options, nullptr, &patches);
+    require_sound(patches.applied_to(enclosure), counts);
     return ExchangeEstimate(one_way_estimate(counts), replicate_samples(counts), counts.leaked);
   };
 }
@@ -63,24 +74,24 @@ LineOptions line_options(const RadiationSettings& settings, std::uint64_t update
   return options;
 }
 
-RadiositySource::Estimate shading_estimate(const RadiationSettings& settings, int threads) {
-  return [=](const Enclosure& enclosure, std::uint64_t update) {
-    return shading_exchange_areas(enclosure, {settings.rays, settings.seed + update, threads});
+RadiositySource::PatchEstimate shading_estimate(const RadiationSettings& settings, int threads) {
+  return [=](const Enclosure& enclosure, const WallPatches& patches, std::uint64_t update) {
+    return shading_exchange_areas(enclosure, {settings.rays, settings.seed + update, threads, &patches});
   };
 }
 
-RadiositySource::Estimate line_estimate(const RadiationSettings& settings, int threads) {
-  return [=](const Enclosure& enclosure, std::uint64_t update) {
+RadiositySource::PatchEstimate line_estimate(const RadiationSettings& settings, int threads) {
+  return [=](const Enclosure& enclosure, const WallPatches& patches, std::uint64_t update) {
     ReplicateSamples replicates;
-    ExchangeAreas areas =
-        sweep_exchange_areas(enclosure, line_options(settings, update, threads), nullptr, &replicates);
+    ExchangeAreas areas = sweep_exchange_areas(enclosure, line_options(settings, update, threads), nullptr,
+                                               &replicates, &patches);
     return ExchangeEstimate(std::move(areas), std::move(replicates));
   };
 }
 
 std::unique_ptr<ExchangeSource> line_source(const RadiationSettings& settings, const Scene& scene,
                                             int threads) {
-  auto areas = std::make_unique<RadiositySource>(line_estimate(settings, threads), settings.closure);
+  auto areas = radiosity_source(settings, line_estimate(settings, threads));
   if (scene.engine == EngineKind::none || settings.closure == Closure::row_sum) return areas;
   return std::make_unique<BlackLineSource>(line_options(settings, 0, threads), std::move(areas));
 }
@@ -109,16 +120,17 @@ std::unique_ptr<ExchangeSource> make_radiation_source(const RadiationSettings& s
       return std::make_unique<PathSource>(options);
     }
     case RadiationKind::embree:
-      return std::make_unique<RadiositySource>(embree_estimate(settings, threads), settings.closure);
+      return radiosity_source(settings, embree_estimate(settings, threads));
     case RadiationKind::lines:
       if (settings.order > 0)
         return std::make_unique<HarmonicSource>(settings.order, line_options(settings, 0, threads));
       return line_source(settings, scene, threads);
     case RadiationKind::shading:
-      return std::make_unique<RadiositySource>(shading_estimate(settings, threads), settings.closure);
+      return radiosity_source(settings, shading_estimate(settings, threads));
     case RadiationKind::correlation:
       return std::make_unique<RadiositySource>(
-          correlation_exchange(read_correlation(settings.table), correlation_use(settings, threads)),
+          RadiositySource::Estimate(
+              correlation_exchange(read_correlation(settings.table), correlation_use(settings, threads))),
           settings.closure);
   }
   return nullptr;

@@ -28,7 +28,7 @@ struct LineGeometry {
     const LineFrame& f = pass.frame();
     const auto wall = surface - static_cast<std::int32_t>(scene.x.size());
     if (wall >= 0 && surface < scene.open_surface) {
-      const LineScene::Face& face = scene.faces[static_cast<std::size_t>(wall)];
+      const LineScene::Face& face = scene.faces[scene.first_face[static_cast<std::size_t>(wall)]];
       return dot(face.corners[0] - point(cell, 0), face.normal) / dot(f.w, face.normal);
     }
     const LineBall ball = pass.ball(surface);

@@ -13,6 +13,7 @@
 #include "dem/bed/wall_shape.h"
 #include "raytrace/embree/embree_tracer.h"
 #include "raytrace/facets.h"
+#include "raytrace/wall_patches.h"
 
 namespace granrad {
 
@@ -234,7 +235,7 @@ LineSpheres LineScene::spheres() const {
           largest};
 }
 
-LineScene::LineScene(const Enclosure& enclosure, double lines_per_disc)
+LineScene::LineScene(const Enclosure& enclosure, double lines_per_disc, const WallPatches* patches)
     : open_surface(static_cast<std::int32_t>(enclosure.open_surface())) {
   auto problems = shape_problems(enclosure);
   if (!problems.empty()) throw InputError(problems);
@@ -280,7 +281,31 @@ LineScene::LineScene(const Enclosure& enclosure, double lines_per_disc)
     for (const Vec3& p : corners_of(all)) hull.push_back(p - middle);
   spacing = line_spacing(enclosure, lines_per_disc, diameter_of(all));
   for (double r : radius) reach.push_back(static_cast<float>(r / spacing));
+  if (patches) cut_faces(*patches);
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    if (f == 0 || faces[f].surface != faces[f - 1].surface) first_face.push_back(f);
   if (periodic) add_periods(enclosure);
+}
+
+/// Faces of patches in place of those of their walls, once the walls are known to close and to be convex.
+void LineScene::cut_faces(const WallPatches& patches) {
+  const std::vector<Face> whole = std::exchange(faces, {});
+  const auto spheres = static_cast<std::int32_t>(x.size());
+  for (const Face& face : whole) {
+    const std::int32_t wall = face.surface - spheres;
+    if (!patches.is_cut(wall)) {
+      faces.push_back(face);
+      faces.back().surface = spheres + patches.first(wall);
+      continue;
+    }
+    if (!faces.empty() && faces.back().surface >= spheres + patches.first(wall))
+      continue;  // its second triangle
+    for (std::int32_t p = patches.first(wall); p < patches.count() && patches.wall(p) == wall; ++p) {
+      faces.push_back({patches.corners(p), face.normal, spheres + p});
+      for (Vec3& corner : faces.back().corners) corner -= middle;
+    }
+  }
+  open_surface = spheres + patches.count();
 }
 
 double LineScene::room_for_images() const {

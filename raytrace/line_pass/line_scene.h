@@ -9,6 +9,7 @@
 namespace granrad {
 
 class EmbreeTracer;
+class WallPatches;
 
 /// An enclosure made ready for parallel lines: checked, recentred on its middle, column by column. Spheres
 /// are sorted so that neighbours in space are mostly neighbours in memory.
@@ -24,9 +25,10 @@ struct LineScene {
   std::vector<float> reach;             ///< radius / spacing
   std::vector<std::int32_t> surface;    ///< number of each sphere in the enclosure
   std::vector<Face> faces;
-  std::vector<Vec3> hull;  ///< points whose hull holds everything a line may meet
-  bool closed = false;     ///< the faces meet edge to edge: no line escapes
-  double spacing = 1;      ///< m, between lines
+  std::vector<std::size_t> first_face;  ///< of each wall or patch
+  std::vector<Vec3> hull;               ///< points whose hull holds everything a line may meet
+  bool closed = false;                  ///< the faces meet edge to edge: no line escapes
+  double spacing = 1;                   ///< m, between lines
   std::int32_t open_surface = 0;
 
   /// Periodic scenes (period > 0 in their directions; elsewhere walls close the box): line ends are counted
@@ -58,10 +60,11 @@ struct LineScene {
 
   /// Spacing such that `lines_per_disc` lines meet a disc of the 10 % quantile of the radii (without spheres:
   /// the mean face is met by 4096 lines), but never more lines than 2^26 in one direction. Throws InputError
-  /// with every problem found.
-  LineScene(const Enclosure& enclosure, double lines_per_disc);
+  /// with every problem found. `patches`: of the enclosure's walls, surfaces of their own in place of the walls.
+  LineScene(const Enclosure& enclosure, double lines_per_disc, const WallPatches* patches = nullptr);
 
  private:
+  void cut_faces(const WallPatches& patches);
   void add_periods(const Enclosure& enclosure);
 };
 

@@ -5,7 +5,7 @@
 
 #include "raytrace/enclosure.h"
 #include "raytrace/lines/line_sweep.h"
-#include "raytrace/lines/wall_patches.h"
+#include "raytrace/wall_patches.h"
 
 namespace granrad {
 

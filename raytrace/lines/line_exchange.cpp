@@ -16,6 +16,7 @@
 #include "raytrace/lines/line_plan.h"
 #include "raytrace/lines/line_sweep.h"
 #include "raytrace/stated_error.h"
+#include "raytrace/wall_patches.h"
 
 namespace granrad {
 
@@ -239,13 +240,15 @@ HitCounts sweep_view_factors(const Enclosure& enclosure, const LineOptions& opti
 }
 
 ExchangeAreas sweep_exchange_areas(const Enclosure& enclosure, const LineOptions& options, LineReport* report,
-                                   ReplicateSamples* replicates) {
+                                   ReplicateSamples* replicates, const WallPatches* patches) {
   check_line_options(options);
-  const LineScene scene(enclosure, options.lines_per_disc);
+  const LineScene scene(enclosure, options.lines_per_disc, patches);
   refuse_wasted_lines(scene, options, options.directions);
-  LineSums s = sums_to_target(scene, options, stated_quantity(enclosure, options.hot_walls), report);
+  const std::optional<Enclosure> cut = patches ? std::optional(patches->applied_to(enclosure)) : std::nullopt;
+  const Enclosure& surfaces = cut ? *cut : enclosure;
+  LineSums s = sums_to_target(scene, options, stated_quantity(surfaces, options.hot_walls), report);
   ExchangeAreas areas;
-  areas.area_m2 = surface_areas(enclosure);
+  areas.area_m2 = surface_areas(surfaces);
   areas.pattern = std::move(s.counts.pattern);
   areas.variance = std::move(s.counts.variance);
   for (double& v : areas.variance) v *= s.unit_m2 * s.unit_m2;

@@ -9,6 +9,8 @@
 
 namespace granrad {
 
+class WallPatches;
+
 /// Global parallel lines: the fast exchange source for spheres of any radii in a convex box or polyhedron.
 ///
 /// Diffuse emission from convex bodies into a convex void is a uniform, isotropic field of lines (Santalo, Integral
@@ -67,9 +69,11 @@ HitCounts sweep_view_factors(const Enclosure& enclosure, const LineOptions& opti
 
 /// The same as exchange areas with their variance: exactly symmetric; rows sum to the sampled area, which
 /// differs from area_m2 by noise until closed.
-/// `replicates`: what each replicate found; left empty when there are too many pairs to keep them.
+/// `replicates`: what each replicate found; left empty when there are too many pairs to keep them. `patches`: of the walls;
+/// surfaces are then those of patches->applied_to(enclosure).
 ExchangeAreas sweep_exchange_areas(const Enclosure& enclosure, const LineOptions& options,
-                                   LineReport* report = nullptr, ReplicateSamples* replicates = nullptr);
+                                   LineReport* report = nullptr, ReplicateSamples* replicates = nullptr,
+                                   const WallPatches* patches = nullptr);
 
 /// Net heat received by every black surface, W, without a matrix: sum_j X_ij (E_j - E_i) for the emissive
 /// powers E [surface_count], W/m^2. Sums in integers: the heats add up to zero within round-off of the

@@ -10,6 +10,8 @@
 
 namespace granrad {
 
+class WallPatches;
+
 /// How many rays, and how they are drawn.
 struct TraceOptions {
   double rays_per_particle =
@@ -47,9 +49,10 @@ struct SelfCheck {
 };
 
 /// View factors of an enclosure by Embree: hit counts of every surface. Throws ThresholdMissed when
-/// target_error is out of reach, TraceStopped.
+/// target_error is out of reach, TraceStopped. `patches`: of the walls; surfaces are then those of
+/// patches->applied_to(enclosure).
 HitCounts trace_view_factors(const Enclosure& enclosure, const TraceOptions& options,
-                             TraceReport* report = nullptr);
+                             TraceReport* report = nullptr, const WallPatches* patches = nullptr);
 
 /// Total exchange-factor counts for grey surfaces: rays followed until absorbed (Russian roulette on the
 /// emissivity of each surface hit); hits[k] counts absorptions. emissivity by surface number. The same

@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
-#include "raytrace/embree/embree_tracer.h"
 #include "raytrace/exact.h"
+#include "raytrace/rays/patch_rays.h"
 #include "raytrace/rays/ray_rows.h"
 #include "raytrace/shading/beam_lines.h"
 #include "raytrace/shading/sphere_shading.h"
@@ -19,23 +20,21 @@ namespace granrad {
 namespace {
 
 /// Counts of rays that the walls send.
-HitCounts trace_walls(const Enclosure& enclosure, const ShadingOptions& options) {
+HitCounts trace_walls(const PatchRays& from, const ShadingOptions& options) {
+  const Enclosure& enclosure = from.surfaces();
   const auto area = surface_areas(enclosure);
   const std::size_t spheres = enclosure.sphere_count();
   const double walls = std::accumulate(area.begin() + static_cast<std::ptrdiff_t>(spheres), area.end(), 0.0);
-  constexpr double least_rays = 1000;
+  constexpr double least_rays = 1000, least_of_patch = 64;
+  const double least = options.patches ? least_of_patch : least_rays;
   const double all = options.rays_per_particle * static_cast<double>(std::max<std::size_t>(1, spheres));
   std::vector<std::int64_t> rays(enclosure.surface_count(), 0);
   for (std::size_t s = spheres; s < enclosure.open_surface(); ++s)
-    rays[s] = std::llround(std::max(least_rays, all * area[s] / walls));
+    rays[s] = std::llround(std::max(least, all * area[s] / walls));
   TraceOptions trace;
   trace.seed = options.seed;
   trace.threads = options.threads;
-  const EmbreeTracer tracer(enclosure, options.threads);
-  return trace_rows(enclosure, area, rays, trace, [&](const EmittedRay& ray) {
-    const End end = tracer.first_end(ray.start.origin_m, ray.start.direction, ray.surface, ray.start.normal);
-    return RayEnd{end.surface, end.distance_m};
-  });
+  return trace_rows(enclosure, area, rays, trace, [&](const EmittedRay& ray) { return from.follow(ray); });
 }
 
 class Assembly {
@@ -58,6 +57,12 @@ class Assembly {
     areas.pattern.row_begin.push_back(0);
     for (auto& row : rows_) {
       std::sort(row.begin(), row.end(), [](const Entry& a, const Entry& b) { return a.column < b.column; });
+      for (std::size_t k = 1; k < row.size(); ++k)
+        if (row[k].column == row[k - 1].column) {  // seen from both ends
+          row[k].value += std::exchange(row[k - 1].value, 0);
+          row[k].variance += row[k - 1].variance;
+        }
+      std::erase_if(row, [](const Entry& e) { return e.value == 0; });
       for (const Entry& e : row) {
         areas.pattern.column.push_back(e.column);
         areas.value.push_back(e.value);
@@ -81,25 +86,14 @@ class Assembly {
 bool add_walls(const Enclosure& enclosure, const HitCounts& counts, Assembly& assembly) {
   const ExchangeAreas one_way = one_way_estimate(counts);
   const std::size_t spheres = enclosure.sphere_count(), open = enclosure.open_surface();
-  const std::size_t walls = open - spheres;
-  std::vector<double> between(walls * walls, 0), variance(walls * walls, 0);
-  bool anything_open = walls == 0;
+  bool anything_open = open == spheres;
   for (std::size_t w = spheres; w < open; ++w)
     for (auto k = one_way.pattern.row_begin[w]; k < one_way.pattern.row_begin[w + 1]; ++k) {
       const auto j = static_cast<std::size_t>(one_way.pattern.column[k]);
-      if (j < spheres || j == open) {
-        assembly.add(w, j, one_way.value[k], one_way.variance[k]);
-        anything_open = anything_open || j == open;
-        continue;
-      }
-      const auto [a, b] = std::minmax(w, j);
-      const double part = a == b ? 1 : 0.5;
-      between[(a - spheres) * walls + b - spheres] += part * one_way.value[k];
-      variance[(a - spheres) * walls + b - spheres] += part * part * one_way.variance[k];
+      const double part = j >= spheres && j != w && j < open ? 0.5 : 1;
+      assembly.add(w, j, part * one_way.value[k], part * part * one_way.variance[k]);
+      anything_open = anything_open || j == open;
     }
-  for (std::size_t a = 0; a < walls; ++a)
-    for (std::size_t b = a; b < walls; ++b)
-      assembly.add(spheres + a, spheres + b, between[a * walls + b], variance[a * walls + b]);
   return anything_open;
 }
 
@@ -133,17 +127,18 @@ void refuse_what_shading_cannot_serve(const Enclosure& enclosure, double rays_pe
 
 ExchangeAreas shading_exchange_areas(const Enclosure& enclosure, const ShadingOptions& options) {
   refuse_what_shading_cannot_serve(enclosure, options.rays_per_particle);
-  Assembly assembly(surface_areas(enclosure));
+  const PatchRays walls(enclosure, options.patches, options.threads);
+  Assembly assembly(surface_areas(walls.surfaces()));
   for (const VisiblePair& pair : visible_pairs(enclosure, options.threads)) {
     const double r_i = enclosure.radius_m[pair.i], r_j = enclosure.radius_m[pair.j];
     const double full = 4 * pi * r_i * r_i * exact_two_sphere(r_i, r_j, pair.distance_m);
     assembly.add(pair.i, pair.j, full * pair.open_share,
                  full * full * pair.open_share * (1 - pair.open_share) / BeamLines::count);
   }
-  const bool anything_open = add_walls(enclosure, trace_walls(enclosure, options), assembly);
+  const bool anything_open = add_walls(walls.surfaces(), trace_walls(walls, options), assembly);
   if (anything_open)
     for (std::size_t i = 0; i < enclosure.sphere_count(); ++i)
-      assembly.add(i, enclosure.open_surface(), assembly.missing_m2(i), 0);
+      assembly.add(i, walls.surfaces().open_surface(), assembly.missing_m2(i), 0);
   return assembly.take();
 }
 

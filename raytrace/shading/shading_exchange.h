@@ -6,10 +6,14 @@
 
 namespace granrad {
 
+class WallPatches;
+
 struct ShadingOptions {
   double rays_per_particle = 200;  ///< that the walls send, in all and in proportion to their areas
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0: OpenMP's default; results do not depend on it
+  const WallPatches* patches =
+      nullptr;  ///< of the walls; surfaces are then those of patches->applied_to(enclosure)
 };
 
 /// Throws InputError: radii that differ, periodic boxes, walls so wide beside the spheres that fewer than 10 of their rays

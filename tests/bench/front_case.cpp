@@ -123,8 +123,8 @@ std::vector<Contender> contenders(bool few) {
     for (const double r : rays) all.push_back({name, settings(kind, r), false, r == in_time});
   };
   using Rays = std::vector<double>;
-  ladder("paths", RadiationKind::paths, few ? Rays{1e4, 1e5} : Rays{1e3, 1e4, 1e5, 1e6}, 1e4);
-  ladder("lines", RadiationKind::lines, few ? Rays{600, 6000} : Rays{150, 600, 6000, 24000}, 600);
+  ladder("paths", RadiationKind::paths, few ? Rays{1e4, 1e5} : Rays{1e3, 1e4, 2e4, 7e4, 1e6}, 1e4);
+  ladder("lines", RadiationKind::lines, few ? Rays{600, 6000} : Rays{150, 600, 2400, 6000, 24000}, 600);
   ladder("embree", RadiationKind::embree, few ? Rays{300} : Rays{100, 1000, 5000}, few ? 300 : 1000);
   ladder("shading", RadiationKind::shading, few ? Rays{1000} : Rays{300, 3000, 8000}, few ? 1000 : 3000);
   for (const int order : few ? std::vector<int>{1} : std::vector<int>{1, 2, 3}) {
@@ -169,8 +169,12 @@ FrontCase::FrontCase(double phi, double eps, double all_walks)
   const double begin = cpu_seconds();
   for (const int k : {0, 1})
     half_[k] = draw(six_, bed_, {"paths", settings(RadiationKind::paths, walks / 2)}, 9001 + k);
-  for (const int k : {0, 1})
-    geometry_[k] = draw(six_, bed_, {"lines", settings(RadiationKind::lines, 2e5)}, 9003 + k);
+  for (const bool patches : {false, true})
+    for (const int k : {0, 1}) {
+      RadiationSettings lines = settings(RadiationKind::lines, 2e5);
+      lines.patches = patches;
+      geometry_[patches][k] = draw(six_, bed_, {"lines", lines}, 9003 + k);
+    }
   reference_seconds = cpu_seconds() - begin;
   mean_heat_W = 0;
   for (std::size_t i = 0; i < bed_.size(); ++i)
@@ -206,16 +210,20 @@ double FrontCase::bare_embree_seconds(double error_pct) const {
 }
 
 FrontCase::Point FrontCase::measure(const Contender& contender) const {
-  constexpr double long_s = 3;
+  constexpr double long_s = 3, enough_s = 0.5;
+  constexpr std::uint64_t most_draws = 16;
   const Case& c = contender.paper ? two_ : six_;
   const std::size_t n = bed_.size();
   std::vector<double> seconds, walls;
   std::vector<RadiativeHeat> draws;
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  double spent = 0;
+  for (std::uint64_t seed = 1; seed <= most_draws; ++seed) {
+    if (seed > 3 && spent > enough_s) break;
     if (seed == 3 && seconds[0] > long_s) break;
     const double begin = cpu_seconds();
     draws.push_back(draw(c, bed_, contender, seed));
     seconds.push_back(cpu_seconds() - begin);
+    spent += seconds.back();
     walls.push_back(hot_walls(c, bed_, draws.back()) / wall_heat_W - 1);
   }
   const double count = static_cast<double>(draws.size());
@@ -232,7 +240,7 @@ FrontCase::Point FrontCase::measure(const Contender& contender) const {
   const auto kind = contender.settings.kind;
   const bool by_view_factors =
       kind != RadiationKind::paths && contender.settings.order == 0 && !contender.paper;
-  const Rms geometry = rms_difference(draws, geometry_, n);
+  const Rms geometry = rms_difference(draws, geometry_[kind != RadiationKind::correlation], n);
   point.geometry_rms_pct = by_view_factors ? unit * geometry.value : std::nan("");
   point.geometry_rms_error_pct = unit * geometry.error;
 
@@ -241,6 +249,7 @@ FrontCase::Point FrontCase::measure(const Contender& contender) const {
   const double own = std::max(0.0, square_of_walls - mean * mean) / (count - 1);
   point.wall_pct = 100 * mean;
   point.wall_error_pct = std::hypot(100 * std::sqrt(own), wall_error_pct);
+  point.wall_rms_pct = 100 * std::sqrt(square_of_walls);
 
   const double noise2 = 0.5 * mean_square_difference(draws[0], draws[1], n);
   const double bias2 = std::max(0.0, all.square - noise2), goal2 = std::pow(0.01 * mean_heat_W, 2);

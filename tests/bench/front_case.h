@@ -34,9 +34,10 @@ class FrontCase {
     double cpu_s = 0, cpu_spread_s = 0;  ///< median of the draws and half their range
     double particle_rms_pct = 0, particle_rms_error_pct = 0;
     double geometry_rms_pct = 0,
-           geometry_rms_error_pct = 0;  ///< against exact view factors and the same radiosities;
-                                        ///< NaN: a source of another kind
-    double wall_pct = 0, wall_error_pct = 0;
+           geometry_rms_error_pct = 0;        ///< against exact view factors and the same radiosities;
+                                              ///< NaN: a source of another kind
+    double wall_pct = 0, wall_error_pct = 0;  ///< of the mean over the draws
+    double wall_rms_pct = 0;                  ///< of one update, as it comes
     double seconds_to_1_pct = 0;  ///< over a run: noise averages out over updates, bias does not; NaN: never
     double temperature_pct = 0,
            temperature_rms_pct = 0;     ///< of the rise in 5 s: mean, each particle; NaN: not asked
@@ -56,8 +57,9 @@ class FrontCase {
 
   Case six_, two_;  ///< all six walls; four of them dropped
   Bed bed_;
-  RadiativeHeat half_[2];      ///< by paths
-  RadiativeHeat geometry_[2];  ///< by view factors of many lines, one radiosity for each surface
+  RadiativeHeat half_[2];  ///< by paths
+  /// By view factors of many lines, one radiosity for each sphere and each wall [0], or each patch [1].
+  RadiativeHeat geometry_[2][2];
 };
 
 double cpu_seconds();

@@ -1,0 +1,109 @@
+// Requirement: re-radiating walls in patches give the heats of traced paths, which return light where it fell; with one
+// radiosity for each wall they do not. Black spheres fill the lower part of a box whose floor is hot and whose side walls
+// re-radiate, so that light on them is uneven. All three ways to view factors, walls' heats reported for whole walls.
+// Planted, seen to fail: patches of a wall joined to one again (all), patch at the start of a ray in place of its end
+// (embree), faces of one patch given to the next (lines).
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "coupling/heat/radiosity_source.h"
+#include "path_cases.h"
+#include "raytrace/lines/line_sweep.h"
+#include "raytrace/rays/view_factors.h"
+#include "raytrace/shading/shading_exchange.h"
+
+namespace granrad {
+namespace {
+
+using namespace path_cases;
+
+constexpr double d = 8e-4;
+
+Case one_sided() {
+  Case c;
+  c.add_box({{0, 0, 0}, {6 * d, 5 * d, 12 * d}}, WallRole::adiabatic, 300, 1);
+  c.wall(4).role = WallRole::isothermal, c.wall(4).temperature_K = 1000;
+  c.wall(5).role = WallRole::isothermal, c.wall(5).temperature_K = 300;
+  for (int k = 0; k < 4; ++k)
+    for (int j = 0; j < 4; ++j)
+      for (int i = 0; i < 5; ++i)
+        c.add_sphere({(0.6 + 1.15 * i) * d, (0.6 + 1.2 * j) * d, (0.6 + 1.15 * k) * d}, 0.5 * d, 300, 1);
+  return c;
+}
+
+RadiositySource::PatchEstimate by_rays(double rays) {
+  return [=](const Enclosure& e, const WallPatches& patches, std::uint64_t) -> ExchangeEstimate {
+    TraceOptions options;
+    options.rays_per_particle = rays;
+    options.kept_replicates = 4;
+    const HitCounts counts = trace_view_factors(e, options, nullptr, &patches);
+    return ExchangeEstimate(one_way_estimate(counts), replicate_samples(counts), counts.leaked);
+  };
+}
+
+RadiositySource::PatchEstimate by_lines(int directions) {
+  return [=](const Enclosure& e, const WallPatches& patches, std::uint64_t) -> ExchangeEstimate {
+    LineOptions options;
+    options.directions = directions;
+    ReplicateSamples samples;
+    ExchangeAreas areas = sweep_exchange_areas(e, options, nullptr, &samples, &patches);
+    return ExchangeEstimate(std::move(areas), std::move(samples));
+  };
+}
+
+RadiositySource::PatchEstimate by_shading(double rays) {
+  return [=](const Enclosure& e, const WallPatches& patches, std::uint64_t) -> ExchangeEstimate {
+    return shading_exchange_areas(e, {rays, 1, 1, &patches});
+  };
+}
+
+/// The same with whole walls.
+RadiositySource::Estimate whole(const RadiositySource::PatchEstimate& estimate) {
+  return [=](const Enclosure& e, std::uint64_t key) {
+    return estimate(e, WallPatches(e.walls, 0, std::vector<char>(e.walls.size(), 0)), key);
+  };
+}
+
+TEST(WallPatchesPhysics, GiveTheHeatsOfTracedPaths) {
+  const Case c = one_sided();
+  const RadiativeHeat exact = c.trace(walks(1000000));
+  const std::size_t n = c.enclosure.sphere_count();
+  const auto beside = [&](ExchangeSource& source, double tolerance_pct, bool agree, const char* name) {
+    const RadiativeHeat found = source.net_heat(c.enclosure, c.state(), 0);
+    ASSERT_EQ(found.heat_W.size(), exact.heat_W.size());
+    double sum = 0, size = 0;
+    for (const double q : found.heat_W) sum += q, size += std::abs(q);
+    EXPECT_LT(std::abs(sum), 1e-12 * size) << name;
+    for (const std::size_t w : {0, 1, 2, 3}) EXPECT_LT(std::abs(found.heat_W[n + w]), 1e-10 * size) << name;
+    double upper = 0, upper_exact = 0, hot = exact.heat_W[n + 4];
+    for (std::size_t i = 3 * n / 4; i < n; ++i) upper += found.heat_W[i], upper_exact += exact.heat_W[i];
+    const double off_pct =
+        100 * std::hypot((upper - upper_exact) / upper_exact, 2 * (found.heat_W[n + 4] / hot - 1));
+    if (agree)
+      EXPECT_LT(off_pct, tolerance_pct) << name;
+    else
+      EXPECT_GT(off_pct, 3 * tolerance_pct) << name;
+  };
+  constexpr double tolerance = 2.5;
+  for (const bool patches : {true, false}) {
+    const auto source = [&](const RadiositySource::PatchEstimate& estimate) {
+      return patches ? RadiositySource(estimate, Closure::reciprocal)
+                     : RadiositySource(whole(estimate), Closure::reciprocal);
+    };
+    auto embree = source(by_rays(3000)), lines = source(by_lines(300)), shading = source(by_shading(4000));
+    beside(embree, tolerance, patches, "embree");
+    beside(lines, tolerance, patches, "lines");
+    beside(shading, tolerance, patches, "shading");
+  }
+}
+
+TEST(WallPatchesPhysics, NothingFlowsInAnIsothermalBox) {
+  Case c = one_sided();
+  c.wall(4).temperature_K = 300;
+  RadiositySource source(by_lines(20), Closure::reciprocal);
+  for (const double q : source.net_heat(c.enclosure, c.state(), 0).heat_W) EXPECT_EQ(q, 0);
+}
+
+}  // namespace
+}  // namespace granrad
