@@ -14,17 +14,9 @@ namespace {
 
 using Polygon = std::vector<Vec3>;
 
-/// The polygon of a flat wall, or nothing.
+/// The polygon of a wall that is one, or nothing.
 Polygon polygon_of(const Wall& wall) {
-  const auto plane = plane_of(wall);
-  if (!plane) return {};
-  if (wall.triangles.empty()) return wall.vertices;
-  const auto figure = parallelogram_of(wall);
-  if (!figure) return {};
-  const auto& [corner, side] = *figure;
-  Polygon corners = {corner, corner + side[0], corner + side[0] + side[1], corner + side[1]};
-  if (dot(polygon_normal(corners), plane->normal) < 0) std::reverse(corners.begin(), corners.end());
-  return corners;
+  return wall.triangles.empty() && plane_of(wall) ? wall.vertices : Polygon{};
 }
 
 /// Where an edge crosses a level; both neighbours of an edge get the same point.
@@ -114,7 +106,7 @@ std::int32_t WallPatches::at(std::int32_t wall, const Vec3& point) const {
 
 double patch_length_m(const Enclosure& enclosure, const std::vector<char>& cut) {
   constexpr double of_free_path = 0.22, least_diameters = 0.5, most_diameters = 2;
-  constexpr double least_patches = 200, patches_per_sphere = 1;
+  constexpr double least_patches = 400, patches_per_sphere = 2;
   double cut_m2 = 0, squares = 0, cubes = 0;
   for (std::size_t w = 0; w < cut.size(); ++w)
     if (cut[w]) cut_m2 += area(enclosure.walls[w]);

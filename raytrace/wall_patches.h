@@ -8,8 +8,8 @@
 namespace granrad {
 
 /// Walls cut into patches, each a surface with a radiosity of its own: where light falls on a re-radiating wall is where
-/// it leaves. Patches are numbered from 0 on, wall by wall; cut are walls of one convex polygon (or parallelogram of
-/// triangles), side by side into even strips of both directions. Others are one patch.
+/// it leaves. Patches are numbered from 0 on, wall by wall; cut are walls of one convex polygon, into
+/// even strips of both directions. Others (meshes) are one patch.
 class WallPatches {
  public:
   /// Cuts into patches no longer than `longest_m` along either side. `cut`: [walls]; empty: all.
@@ -49,7 +49,7 @@ class WallPatches {
 /// How long patches of the walls in `cut` [walls] should be. Light on a wall varies over the free path between spheres, 4 V / S
 /// in their bounding box: 0.22 of it, but half a diameter to two, keeps what one radiosity for each patch does to the heat of
 /// each particle below 1 % rms (channel of 12 x 5 d, solid fractions 0.07 to 0.43, black; whole walls 2.2 to 6.8 %). Longer
-/// where that would make more than 200 patches and one for each sphere.
+/// where that would make more than 400 patches and two for each sphere.
 double patch_length_m(const Enclosure& enclosure, const std::vector<char>& cut);
 
 }  // namespace granrad

@@ -67,7 +67,7 @@ RadiositySource::Estimate whole(const RadiositySource::PatchEstimate& estimate) 
 
 TEST(WallPatchesPhysics, GiveTheHeatsOfTracedPaths) {
   const Case c = one_sided();
-  const RadiativeHeat exact = c.trace(walks(1000000));
+  const RadiativeHeat exact = c.trace(walks(500000));
   const std::size_t n = c.enclosure.sphere_count();
   const auto beside = [&](ExchangeSource& source, double tolerance_pct, bool agree, const char* name) {
     const RadiativeHeat found = source.net_heat(c.enclosure, c.state(), 0);
@@ -85,13 +85,14 @@ TEST(WallPatchesPhysics, GiveTheHeatsOfTracedPaths) {
     else
       EXPECT_GT(off_pct, 3 * tolerance_pct) << name;
   };
-  constexpr double tolerance = 2.5;
+  constexpr double tolerance =
+      5;  // patches are 0.7 d here, and the light falls by a factor of e over about one d
   for (const bool patches : {true, false}) {
     const auto source = [&](const RadiositySource::PatchEstimate& estimate) {
       return patches ? RadiositySource(estimate, Closure::reciprocal)
                      : RadiositySource(whole(estimate), Closure::reciprocal);
     };
-    auto embree = source(by_rays(3000)), lines = source(by_lines(300)), shading = source(by_shading(4000));
+    auto embree = source(by_rays(1500)), lines = source(by_lines(120)), shading = source(by_shading(3000));
     beside(embree, tolerance, patches, "embree");
     beside(lines, tolerance, patches, "lines");
     beside(shading, tolerance, patches, "shading");

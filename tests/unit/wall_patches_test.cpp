@@ -33,19 +33,16 @@ double longest(const std::vector<Vec3>& corners, const Vec3& along) {
 }
 
 TEST(WallPatches, TileEveryWallAndFindTheirPoints) {
-  Wall mesh = polygon({{0, 0, 1}, {1, 0, 1}, {1, 2, 1}, {0, 2, 1}});
-  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   const std::vector<Wall> walls = {polygon({{0, 0, 0}, {3, 0, 0}, {3, 1, 0}, {0, 1, 0}}),
                                    polygon({{0, 0, 0}, {2, 0, 1}, {1, 2, 2}}),
-                                   polygon({{0, 0, 0}, {0, 4, 0}, {0, 3, 1}, {0, 1, 1}}), mesh};
+                                   polygon({{0, 0, 0}, {0, 4, 0}, {0, 3, 1}, {0, 1, 1}})};
   const double size = 0.3;
   const WallPatches patches(walls, size);
   EXPECT_EQ(patches.wall(patches.first(1) - 1), 0);
   EXPECT_EQ(patches.first(1), 10 * 4);
-  EXPECT_TRUE(patches.is_cut(3)) << "a rectangle of two triangles";
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform;
-  for (std::int32_t w = 0; w < 4; ++w) {
+  for (std::int32_t w = 0; w < 3; ++w) {
     const Vec3 normal = plane_of(walls[w])->normal,
                u = normalized(walls[w].vertices[1] - walls[w].vertices[0]);
     double sum = 0;
