@@ -34,8 +34,10 @@ addEventListener('load', () => setTimeout(() => {
     if (Math.abs(canvas.clientWidth * canvas.height / canvas.clientHeight / canvas.width - 1) > 0.02) faults.push('the bed is stretched');
   for (const figure of document.querySelectorAll('figure.chart')) {
     const chart = JSON.parse(figure.querySelector('script').textContent), brush = document.createElement('canvas').getContext('2d');
-    brush.font = '13px system-ui, sans-serif';
-    if (brush.measureText(chart.y_label).width > figure.granrad.plot().height) faults.push('cut off: ' + chart.y_label);
+    const u = figure.granrad.plot();
+    brush.font = [u.axes[1].labelFont].flat()[0];  // in pixels of the screen
+    const middle = (u.bbox.top + u.bbox.height / 2) / devicePixelRatio;  // where the label is
+    if (brush.measureText(chart.y_label).width / devicePixelRatio > 2 * Math.min(middle, u.height - middle)) faults.push('cut off: ' + chart.y_label);
   }
   let first = document.querySelector('h1').nextElementSibling;
   if (first.tagName === 'H2') first = first.nextElementSibling;

@@ -139,7 +139,12 @@
         grid: {stroke: css("--rule"), width: 1}, ticks: {stroke: css("--rule"), width: 1},
         values: (u, splits) => splits.map(v => log && Math.abs(Math.log10(v) % 1) > 1e-6 && u.axes[0]._splits?.length > 8 ? "" : number_text(v)),
       });
+      const height = Math.round(Math.min(340, Math.max(220, width * 0.55)));
       const y_axis = axis(chart.y_label, logs.y);
+      const brush = document.createElement("canvas").getContext("2d");
+      brush.font = y_axis.labelFont;  // a long name becomes smaller, never cut off; beside it stand two thirds of the height
+      const size = Math.min(13, Math.max(8, Math.floor(13 * 0.66 * height / brush.measureText(chart.y_label).width)));
+      y_axis.labelFont = `${size}px system-ui, sans-serif`;
       y_axis.size = (u, values) => values ? Math.max(50, 22 + 7.2 * Math.max(...values.map(v => (v || "").length))) : 50;
       // Bars and bands belong to what is shown.
       const with_bars = (u, low, high) => {
@@ -149,7 +154,7 @@
         return low == null ? [0, 1] : uPlot.rangeNum(low, high, 0.1, true);
       };
       plot = new uPlot({
-        width, height: Math.round(Math.min(340, Math.max(220, width * 0.55))),
+        width, height,
         scales: {x: {time: false, distr: logs.x ? 3 : 1}, y: {distr: logs.y ? 3 : 1, range: logs.y ? undefined : with_bars}},
         axes: [axis(chart.x_label, logs.x), y_axis],
         series: [{label: chart.x_label, value: (u, v) => number_text(v)}, ...chart.series.map((s, k) => ({
