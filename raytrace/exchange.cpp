@@ -8,6 +8,10 @@ namespace granrad {
 
 double count_variance_factor(const HitCounts& counts, std::size_t i, std::int64_t k) {
   const auto at = static_cast<std::size_t>(k);
+  const auto spheres = static_cast<std::size_t>(counts.spheres);
+  const auto to = static_cast<std::size_t>(counts.pattern.column[at]);
+  if (i >= spheres && to >= spheres && !counts.wall_variance_factor.empty())
+    return counts.wall_variance_factor[(i - spheres) * (counts.launched.size() - spheres) + to - spheres];
   const auto& by_count = counts.variance_factor[pair_kind(counts.spheres, static_cast<std::int32_t>(i),
                                                           counts.pattern.column[at])];
   if (by_count.empty()) return 1;

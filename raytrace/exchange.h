@@ -26,6 +26,9 @@ struct HitCounts {
   /// the kind of pair (pair_kind) and the size of the count: [b] for counts in [2^b, 2^(b+1)), the last one
   /// also beyond. Empty: binomial.
   std::array<std::vector<double>, 4> variance_factor;
+  /// The same of each pair of walls, from its own replicates: [a (walls + 1) + b], b = walls the surroundings. How even a
+  /// low-discrepancy set is depends on what the pair sees of each other, three times in variance. Empty: by size.
+  std::vector<double> wall_variance_factor{};
   /// The same of a particle's sum over the walls whose error is stated (see StatedQuantity).
   double sum_variance_factor = 1;
   std::int64_t leaked = 0;        ///< rays that met the back of a wall or were lost

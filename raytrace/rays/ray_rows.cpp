@@ -29,6 +29,9 @@ int replicate_count(Sampling sampling, std::size_t surfaces) {
   return static_cast<int>(std::clamp<std::size_t>(256 / surfaces, 2, 32));
 }
 
+/// Of walls: they are few and send many rays, so that each pair can tell its own variance.
+constexpr int wall_replicates = 24;
+
 /// Of a point in the unit cube; z counts most.
 std::uint32_t morton_key(const Vec3& p) {
   return morton_code(1023.0 * Vec3{p.z, p.y, p.x});
@@ -47,6 +50,7 @@ class RowTracer {
                std::accumulate(rays.begin(), rays.end(), 0.0) < most_kept_rays),
         replicates_(keeps_ ? options.kept_replicates
                            : replicate_count(options.sampling, enclosure.surface_count())),
+        of_walls_(keeps_ || replicates_ == 1 ? replicates_ : std::max(replicates_, wall_replicates)),
         threads_(options.threads > 0 ? options.threads : omp_get_max_threads()),
         monitor_(options.watch, std::accumulate(rays.begin(), rays.end(), 0.0)),
         tallies_(static_cast<std::size_t>(threads_), HitTally(enclosure.surface_count())),
@@ -61,6 +65,7 @@ class RowTracer {
   }
 
   int replicates() const { return replicates_; }
+  int replicates_of_walls() const { return of_walls_; }
   bool keeps() const { return keeps_; }
   const std::vector<char>& stated() const { return stated_; }
 
@@ -113,7 +118,11 @@ class RowTracer {
   }
 
   std::int64_t per_replicate(std::int32_t surface) const {
-    return (rays_[static_cast<std::size_t>(surface)] + replicates_ - 1) / replicates_;
+    const int replicates = replicates_of(surface);
+    return (rays_[static_cast<std::size_t>(surface)] + replicates - 1) / replicates;
+  }
+  int replicates_of(std::int32_t surface) const {
+    return static_cast<std::size_t>(surface) < centre_m_.size() ? replicates_ : of_walls_;
   }
   HitTally& own_tally() {
     return tallies_[static_cast<std::size_t>(omp_get_thread_num())];
@@ -122,20 +131,20 @@ class RowTracer {
   TracedRow trace_surface(std::int32_t surface, HitTally& tally) {
     TracedRow row;
     const std::int64_t rays = per_replicate(surface);
-    for (std::int32_t replicate = 0; replicate < replicates_; ++replicate) {
+    for (std::int32_t replicate = 0; replicate < replicates_of(surface); ++replicate) {
       row.add_chords(trace_rays(surface, replicate, 0, rays, tally));
       end_replicate(row, tally, replicate);
     }
     row.entries = tally.take();
-    row.launched = rays * replicates_;
+    row.launched = rays * replicates_of(surface);
     return row;
   }
 
   /// The same, a part of a replicate at a time.
   TracedRow trace_in_parts(std::int32_t surface) {
     const std::int64_t rays = per_replicate(surface), parts = (rays + part_rays - 1) / part_rays;
-    std::vector<TracedRow> found(static_cast<std::size_t>(parts * replicates_));
-    const RankPart mine = part_of_rank(parts * replicates_);
+    std::vector<TracedRow> found(static_cast<std::size_t>(parts * replicates_of(surface)));
+    const RankPart mine = part_of_rank(static_cast<std::int64_t>(found.size()));
     std::vector<std::size_t> places(static_cast<std::size_t>(mine.end - mine.begin));
     std::iota(places.begin(), places.end(), static_cast<std::size_t>(mine.begin));
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
@@ -157,7 +166,7 @@ class RowTracer {
         end_replicate(row, tally, static_cast<std::int32_t>(k / static_cast<std::size_t>(parts)));
     }
     row.entries = tally.take();
-    row.launched = rays * replicates_;
+    row.launched = rays * replicates_of(surface);
     return row;
   }
 
@@ -205,7 +214,7 @@ class RowTracer {
   const std::function<RayEnd(const EmittedRay&)>& follow_;
   std::vector<char> stated_;
   bool keeps_;
-  int replicates_, threads_;
+  int replicates_, of_walls_, threads_;
   RayMonitor monitor_;
   std::vector<HitTally> tallies_;
   const std::vector<Vec3>& centre_m_;
@@ -285,10 +294,18 @@ class SumVariance {
 /// Gathers rows in the order of the surfaces.
 class CountBuilder {
  public:
-  CountBuilder(HitCounts& counts, Thinning thinning, int replicates, double stated_density)
-      : counts_(counts), thinning_(thinning), replicates_(replicates), stated_density_(stated_density) {
+  CountBuilder(HitCounts& counts, Thinning thinning, int replicates, int of_walls, double stated_density)
+      : counts_(counts),
+        thinning_(thinning),
+        replicates_(replicates),
+        of_walls_(of_walls),
+        walls_(counts.area_m2.size() - static_cast<std::size_t>(counts.spheres)),
+        stated_density_(stated_density) {
+    constexpr int enough = 16;  // the error of a pair is then known to a fifth
+    constexpr std::size_t most_walls = 200;
     counts_.pattern.row_begin.assign(1, 0);
     counts_.thinning_unit = thinning_.unit();
+    if (of_walls_ >= enough && walls_ <= most_walls) counts_.wall_variance_factor.assign(walls_ * walls_, 1);
   }
 
   void append(const TracedRow& row) {
@@ -298,8 +315,11 @@ class CountBuilder {
       const double density = area > 0 ? static_cast<double>(row.launched) / area : 0;
       if (i < counts_.spheres && density > 0)
         sum_.add(row.stated, row.launched, replicates_, density / (density + stated_density_));
-      for (const HitEntry& e : row.entries)
-        table_[pair_kind(counts_.spheres, i, e.surface)].add(e, row.launched, replicates_);
+      const int replicates = i < counts_.spheres ? replicates_ : of_walls_;
+      for (const HitEntry& e : row.entries) {
+        table_[pair_kind(counts_.spheres, i, e.surface)].add(e, row.launched, replicates);
+        if (i >= counts_.spheres && e.surface >= counts_.spheres) add_pair_of_walls(i, e, row.launched);
+      }
     }
     for (const HitEntry& e : row.entries) {
       const std::int64_t hits = thinning_.kept(i, e.surface, e.hits);
@@ -339,9 +359,21 @@ class CountBuilder {
   }
 
  private:
+  void add_pair_of_walls(std::int32_t i, const HitEntry& e, std::int64_t launched) {
+    const double k = static_cast<double>(e.hits), r = of_walls_;
+    const double binomial = k * (1 - k / static_cast<double>(launched));
+    if (counts_.wall_variance_factor.empty() || !(binomial > 0)) return;
+    const auto a = static_cast<std::size_t>(i - counts_.spheres),
+               b = static_cast<std::size_t>(e.surface - counts_.spheres);
+    const double of_rounding = r / 12;  // however even the set is, counts are whole
+    counts_.wall_variance_factor[a * walls_ + b] =
+        std::max(r / (r - 1) * (e.replicate_square_sum - k * k / r), of_rounding) / binomial;
+  }
+
   HitCounts& counts_;
   Thinning thinning_;
-  int replicates_;
+  int replicates_, of_walls_;
+  std::size_t walls_;  ///< surroundings among them
   double stated_density_;
   std::array<VarianceTable, 4> table_;
   SumVariance sum_;
@@ -416,7 +448,7 @@ HitCounts trace_rows(const Enclosure& enclosure, const std::vector<double>& emit
   counts.spheres = static_cast<std::int32_t>(enclosure.sphere_count());
   if (tracer.keeps() && unit == 1) counts.parts.resize(static_cast<std::size_t>(tracer.replicates()));
   CountBuilder builder(counts, Thinning(options.seed, unit), tracer.replicates(),
-                       stated_density(tracer.stated(), emitting_area_m2, rays));
+                       tracer.replicates_of_walls(), stated_density(tracer.stated(), emitting_area_m2, rays));
   // Walls first: they send the most rays, and threads should not wait for the last of them.
   const std::size_t spheres = enclosure.sphere_count();
   std::vector<std::int32_t> walls(surfaces - spheres);

@@ -79,6 +79,7 @@ void write_rays(Hdf5Writer& out, const HitCounts& counts) {
   for (std::size_t kind = 0; kind < pair_kind_names.size(); ++kind)
     write_some(out, fmt::format("/rays/variance_factor/{}", pair_kind_names[kind]),
                counts.variance_factor[kind]);
+  write_some(out, "/rays/variance_factor/each_wall_wall", counts.wall_variance_factor);
   out.attribute("/rays", "leaked", std::vector<std::int64_t>{counts.leaked});
   out.attribute("/rays", "thinning_unit", std::vector<std::int64_t>{counts.thinning_unit});
   if (counts.directions > 0)
@@ -241,6 +242,7 @@ HitCounts read_rays(const Hdf5Reader& in, std::size_t surfaces) {
   for (std::size_t kind = 0; kind < pair_kind_names.size(); ++kind)
     counts.variance_factor[kind] =
         read_some<double>(in, fmt::format("/rays/variance_factor/{}", pair_kind_names[kind]));
+  counts.wall_variance_factor = read_some<double>(in, "/rays/variance_factor/each_wall_wall");
   counts.leaked = in.integer_attribute("/rays", "leaked");
   counts.thinning_unit = in.integer_attribute("/rays", "thinning_unit");
   if (in.has_attribute("/rays", "directions"))
@@ -287,6 +289,10 @@ ViewFactorFile read_content(const Hdf5Reader& in) {
   content.emissivity = in.read<double>("/surfaces/emissivity");
   const std::size_t surfaces = content.enclosure.surface_count();
   content.counts = read_rays(in, surfaces);
+  const std::size_t walls = surfaces - content.enclosure.sphere_count();
+  const auto& of_walls = content.counts.wall_variance_factor;
+  sound(of_walls.empty() || (of_walls.size() == walls * walls && all_finite(of_walls, 0)),
+        "/rays/variance_factor");
   auto area = in.read<double>("/surfaces/area");
   sound(area.size() == surfaces && content.emissivity.size() == surfaces && all_finite(area, 0) &&
             all_finite(content.emissivity, 0) &&

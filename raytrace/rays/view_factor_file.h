@@ -28,7 +28,7 @@ inline constexpr std::int64_t view_factor_version = 2;
 ///   /rays                  raw counts, before closure
 ///     launched [N] int64, row_begin [N+1] int64, column [m] int32, hits [m] int64
 ///     variance_factor/     particle_particle, particle_wall, wall_particle, wall_wall [b], where sampling is
-///                          not plain (see HitCounts)
+///                          not plain, and each_wall_wall [walls + 1, walls + 1] (see HitCounts)
 ///     attributes           leaked, thinning_unit, directions (of lines), sum_variance_factor, mean_chord_m, mean_chord_error_m
 ///   /spent
 ///     attributes           sampling (sobol, random, lines), rays, rounds (TraceReport), stated
