@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "dem/base/error.h"
-#include "dem/bed/cell_grid.h"
+#include "dem/bed/near_pairs.h"
 #include "dem/bed/wall_shape.h"
 #include "dem/io/snapshot.h"
 #include "dem/scene/scene.h"
@@ -122,30 +122,35 @@ void refuse_particles_behind_walls(const Scene& scene, const Bed& bed) {
                     count > examples_shown ? ", ..." : ""));
 }
 
+/// Throws when something overlaps; `ids` are examples of the `count`.
+void refuse_overlaps(const Scene& scene, std::size_t count, const char* what,
+                     const std::vector<std::string>& ids) {
+  if (count == 0) return;
+  throw InputError(fmt::format(
+      "{}: {} {} overlap by more than a tenth of a radius, ids {}{} (the contact law "
+      "would throw them apart); check the radius and the unit of length",
+      scene.particle_file.string(), count, what, fmt::join(ids, ", "), count > ids.size() ? ", ..." : ""));
+}
+
+/// Pairs in any bed; particles and walls where forces move them: a frozen bed may be cut by its box.
 void refuse_deep_overlaps(const Scene& scene, const Bed& bed) {
-  if (bed.size() == 0) return;
-  std::vector<Vec3> points;
-  std::vector<std::int32_t> all;
-  for (std::size_t i = 0; i < bed.size(); ++i) {
-    points.push_back(wrapped_into_box(bed, bed.position_m[i]));
-    all.push_back(static_cast<std::int32_t>(i));
-  }
-  const double largest = *std::max_element(bed.radius_m.begin(), bed.radius_m.end());
-  const CellGrid grid(points, all, 2 * largest, bed.box, bed.periodic);
-  std::vector<std::string> pairs;
+  const NearPairs touching = near_pairs(bed, 0);
+  std::vector<std::string> ids;
   std::size_t count = 0;
-  for (const auto i : all)
-    grid.visit_around(points[i], [&](std::int32_t j, const Vec3& at) {
-      const double ri = bed.radius_m[i], rj = bed.radius_m[j];
-      if (j <= i || norm(nearest_image(bed, at - points[i])) >= ri + rj - largest_overlap * std::min(ri, rj))
-        return;
-      if (count++ < examples_shown) pairs.push_back(fmt::format("{}-{}", bed.id[i], bed.id[j]));
-    });
-  if (count > 0)
-    throw InputError(fmt::format(
-        "{}: {} pairs overlap by more than a tenth of a radius, ids {}{} (the contact law "
-        "would throw them apart); check the radius and the unit of length",
-        scene.particle_file.string(), count, fmt::join(pairs, ", "), count > examples_shown ? ", ..." : ""));
+  for (const auto& [i, j, distance_m] : touching.particles) {
+    const double ri = bed.radius_m[i], rj = bed.radius_m[j];
+    if (distance_m >= ri + rj - largest_overlap * std::min(ri, rj)) continue;
+    if (count++ < examples_shown) ids.push_back(fmt::format("{}-{}", bed.id[i], bed.id[j]));
+  }
+  refuse_overlaps(scene, count, "pairs", ids);
+  if (!computes_forces(scene.engine)) return;
+  ids.clear();
+  for (const auto& near : touching.walls) {
+    if (near.distance_m >= (1 - largest_overlap) * bed.radius_m[near.i]) continue;
+    if (count++ < examples_shown)
+      ids.push_back(fmt::format("{} with {}", bed.id[near.i], bed.walls[near.wall].name));
+  }
+  refuse_overlaps(scene, count, "particles and walls", ids);
 }
 
 void take_particles(const Scene& scene, Bed& bed) {

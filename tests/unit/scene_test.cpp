@@ -379,6 +379,18 @@ TEST(InitialBed, RefusesParticlesOutsideTheWallsAndDeepOverlaps) {
               std::string::npos)
         << error.what();
   }
+  // Planted, seen: pairs alone looked at (the run goes on, the sphere leaves the wall).
+  const auto cut = folder.write("cut.csv", "x,y,z,radius\n0.0003,0.002,0.01,0.0004\n");
+  try {
+    initial_bed(scene_from_file(cut));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("1 particles and walls overlap by more than a tenth of a radius, ids 1 with"),
+              std::string::npos)
+        << error.what();
+  }
+  EXPECT_NO_THROW(initial_bed(scene_from_file(cut, "[dem]\nengine = \"none\"\n")));
 }
 
 TEST(InitialBed, AFrameBringsItsStateAndItsContacts) {
