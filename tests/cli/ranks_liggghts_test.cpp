@@ -115,6 +115,18 @@ TEST_F(RanksLiggghts, AnUnevenBedMovesAsOnOneRankLong) {
   expect_near(alone, shared, 1e-9, 1e-8);
 }
 
+// Spheres touch across the periods, and parts meet there too.
+TEST_F(RanksLiggghts, APeriodicBedMovesAsOnOneRankLong) {
+  const auto scene = scene_of(packed_rows(), "[0.003996, 0.0031968, 0.0075]\nperiodic = [\"x\", \"y\"]");
+  const std::string floor =
+      " --unset walls.x_min --unset walls.x_max --unset walls.y_min --unset walls.y_max"
+      " --set walls.z_min.role=isothermal --set walls.z_min.temperature_K=900";
+  const auto alone = scratch.root / "alone", shared = scratch.root / "shared";
+  ASSERT_EQ(granrun(scratch, line(scene, alone, floor)).code, 0);
+  ASSERT_EQ(run_on_ranks(scratch, 3, "granrun", line(scene, shared, floor)).code, 0);
+  expect_near(alone, shared, 1e-9, 1e-8);
+}
+
 // The feed brings the same spheres; collisions part their ways, and the heat and flow of all agree.
 TEST_F(RanksLiggghts, APlugFlowsAndHeatsAlikeLong) {
   const auto scene = scratch.write("plug.toml", small_plug).string();
