@@ -8,6 +8,11 @@
 
 namespace granrad {
 
+namespace {
+/// Of the energy of the bed: temperatures are rounded to 1e-16 of it at every step, which is no defect of smaller heats.
+constexpr double least_received = 1e-5;
+}  // namespace
+
 void CompensatedSum::add(double term) {
   const double next = sum_ + term;
   lost_ += std::abs(sum_) >= std::abs(term) ? (sum_ - next) + term : (term - next) + sum_;
@@ -51,7 +56,7 @@ double EnergyLedger::relative_defect(const Bed& bed, double feed_in_J, double fe
   const double defect = std::abs(stored_J(bed, feed_in_J, feed_out_J) - received - missed_.value());
   if (defect == 0) return 0;
   const double energy = std::max(thermal_energy_J(bed), energy_at_start_J_);
-  const double scale = std::abs(received) > 1e-12 * energy ? std::abs(received) : energy;
+  const double scale = std::max(std::abs(received), least_received * energy);
   return scale > 0 ? defect / scale : 0;
 }
 

@@ -33,8 +33,8 @@ class EnergyLedger {
   HeatPaths received_J() const;
   /// sum m c T now, minus at time 0, minus brought in by the feed, plus carried out with removed particles.
   double stored_J(const Bed& bed, double feed_in_J, double feed_out_J) const;
-  /// |stored - received - missed| / |received|; relative to the energy of the bed where hardly any was
-  /// received (below 1e-12 of it); 0 when nothing moved.
+  /// |stored - received - missed| / |received|; relative to 1e-5 of the energy of the bed where less was received; 0 when
+  /// nothing moved.
   double relative_defect(const Bed& bed, double feed_in_J, double feed_out_J) const;
 
   StateBlock save() const;

@@ -89,6 +89,19 @@ TEST(EnergyLedger, OfABedThatGetsNothingHasNoDefect) {
   EXPECT_LT(ledger.relative_defect(bed, 0, 0), 1e-13);
 }
 
+// Planted, seen: relative to what was received, however little (rounding of temperatures became a defect of 10).
+TEST(EnergyLedger, OfABedThatGetsHardlyAnythingIsNotRounding) {
+  Bed bed = hot_walled_bed(10);
+  for (int i = 0; i < 10; ++i) bed.temperature_K[i] = 300 + 37.1 * i;
+  EnergyLedger ledger;
+  ledger.start(bed);
+  Conductances inside = chain(10);
+  inside.walls.clear();
+  bed.radiative_heat_W.assign(10, 1e-11);
+  for (int k = 0; k < 1000; ++k) ledger.receive(advance_temperatures(bed, inside, 1e-3));
+  EXPECT_LT(ledger.relative_defect(bed, 0, 0), 1e-9);
+}
+
 // What walls exchange among themselves is missed by a rounding; 0 J cannot measure it (it was written as
 // inf).
 TEST(EnergyLedger, OfAnEmptyBedHasNoDefect) {
