@@ -38,6 +38,18 @@ std::string verdicts(const std::vector<Judgement>& judged) {
   return fmt::format("{} numbers: {}.\n\n", judged.size(), text);
 }
 
+/// Which versions of the program the cases are of.
+std::string made_by(const StudyOutcome& outcome) {
+  std::map<std::string, int> count;
+  for (const auto& row : outcome.rows)
+    for (const auto& record : row.records)
+      if (record.status == "finished") ++count[record.version];
+  std::string text;
+  for (const auto& [version, n] : count)
+    text += fmt::format("{}{} ({} cases)", text.empty() ? "Made by granrad " : ", ", version, n);
+  return text.empty() ? "" : text + ". ";
+}
+
 }  // namespace
 
 std::string claims_book(const StudyOutcome& outcome) {
@@ -53,7 +65,7 @@ std::string claims_book(const StudyOutcome& outcome) {
       stem, stem, stem == "validation" ? "`./do validate`" : "`./do paper`",
       outcome.study.claims.filename().string(),
       whole ? "" : "**A part of the study**: numbers of cases that were not run say so. ");
-  text += verdicts(outcome.judged);
+  text += made_by(outcome) + verdicts(outcome.judged);
   text +=
       "| | quantity | case | class | ours | reference | bias | verdict |\n|---|---|---|---|---|---|---|---|\n";
   for (const auto& j : outcome.judged)

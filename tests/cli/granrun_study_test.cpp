@@ -275,6 +275,8 @@ TEST(GranrunStudy, ClaimsAndFitsAreJudgedAndSweepIsItsOldName) {
   const auto book = content(study.root / "book.md");
   EXPECT_NE(book.find("**differs**"), std::string::npos) << "failures stay in the book";
   EXPECT_NE(book.find("--case e/emissivity-1"), std::string::npos) << book;
+  EXPECT_NE(book.find("Made by granrad "), std::string::npos) << book;
+  EXPECT_NE(book.find(" (4 cases). "), std::string::npos) << book;
 
   study.write("claims.csv", "id,reference,ours\n1,2,{e/emissivity-3:h_wp_W_m2K}\n2,2,1 +\n");
   const auto bad = study.run(text);
