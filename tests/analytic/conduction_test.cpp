@@ -119,7 +119,7 @@ TEST(Conduction, ModulusExponentOneThirdIsTheAreaCorrectionOfLiggghts) {
   EXPECT_NEAR(g.particles[0].solid_W_K / theirs, known, 1e-5);
 }
 
-// Planted, seen to fail: heats of the second particle added, not taken; the heat of walls left out.
+// Planted, seen to fail: heats of the second particle added, not taken.
 TEST(Conduction, HeatsByPathAreWhatMovesTheTemperature) {
   Bed bed = pair_at(7.95e-4);
   Wall wall;

@@ -1,5 +1,5 @@
 // Requirement: results are printed in the units the scene is written in; without any, in SI.
-// Planted, seen to fail: the zero of degC left out; the end time taken for a velocity.
+// Planted, seen to fail: the zero of degC left out.
 #include <gtest/gtest.h>
 
 #include "coupling/results/written_units.h"
