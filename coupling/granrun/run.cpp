@@ -17,6 +17,7 @@
 #include "dem/base/files/text_file.h"
 #include "dem/base/program.h"
 #include "dem/io/export_text.h"
+#include "dem/io/saved_state.h"
 #include "dem/ranks/ranks.h"
 
 namespace granrad {
@@ -65,11 +66,12 @@ void begin(Simulation& simulation, const Case& c, const std::filesystem::path& w
     say(options, "note: " + note);
 }
 
-/// A finished case is worth its last frame: a damaged one is made again from the frame before.
-bool last_frame_is_whole(const CaseFolder& folder) {
+/// A finished case is worth its last frame: a damaged one, or one of another scene, is made again from the frame before.
+bool last_frame_is_whole(const CaseFolder& folder, const Case& c) {
   const auto frames = folder.frames();
   try {
-    return !frames.empty() && read_frame(frames.back().file).bed.step == frames.back().step;
+    return !frames.empty() && saved_integer(saved_block(read_frame(frames.back().file), "case"),
+                                            "identity") == static_cast<std::int64_t>(text_hash(c.identity));
   } catch (const Error&) {
     return false;
   }
@@ -84,7 +86,8 @@ bool is_done(const std::filesystem::path& where, const Case& c) {
   const auto& times = read_history(folder.history()).at("time_s");
   const double rounding = 1e-9 * record.end_time_s;
   return !times.empty() && std::abs(times.back() - record.end_time_s) <= rounding &&
-         read_case(where / "scene.toml", {}).effective_text == c.portable_text && last_frame_is_whole(folder);
+         read_case(where / "scene.toml", {}).effective_text == c.portable_text &&
+         last_frame_is_whole(folder, c);
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ TEST(GranrunCase, KeepsItsHistoryWhenNoFrameCanBeRead) {
   EXPECT_EQ(content(folder / "history.csv"), before.at("history.csv"));
 }
 
-// A finished case is worth its last frame (to plant: its record alone believed, the damaged frame stays).
+// A finished case is worth its last frame. Planted, seen: its record alone believed, the damaged frame stays.
 TEST(GranrunCase, AFinishedOneWithADamagedLastFrameIsMadeWholeAgain) {
   Scratch scratch;
   const auto scene = scratch.write("plug.toml", small_plug);
@@ -118,8 +118,11 @@ TEST(GranrunCase, AFinishedOneWithADamagedLastFrameIsMadeWholeAgain) {
   std::string last;
   for (const auto& [name, text] : before)
     if (name.starts_with("frames/")) last = name;
-  for (const std::string& damage :
-       {before.at(last).substr(0, 20000), std::string("no frame"), std::string()}) {
+  const auto other =
+      scratch.write("other.toml", edited(small_plug, "conductivity_W_mK = 33\n", "conductivity_W_mK = 32\n"));
+  ASSERT_EQ(granrun(scratch, run_line(other, scratch.root / "other", "-q")).code, 0);
+  for (const std::string& damage : {before.at(last).substr(0, 20000), std::string("no frame"), std::string(),
+                                    content(scratch.root / "other" / last)}) {
     std::ofstream(folder / last, std::ios::trunc | std::ios::binary) << damage;
     const auto again = granrun(scratch, run_line(scene, folder, "-q --resume"));
     EXPECT_EQ(again.code, 0) << again.err;
@@ -129,7 +132,7 @@ TEST(GranrunCase, AFinishedOneWithADamagedLastFrameIsMadeWholeAgain) {
   }
 }
 
-// To plant: only the last row looked at.
+// Planted, seen: only the last row looked at.
 TEST(GranrunCase, SaysWhereRowsOfItsHistoryAreMissing) {
   Scratch scratch;
   const auto scene = scratch.write("plug.toml", small_plug);
@@ -146,7 +149,7 @@ TEST(GranrunCase, SaysWhereRowsOfItsHistoryAreMissing) {
   EXPECT_NE(again.err.find("are missing"), std::string::npos) << again.err;
 }
 
-// To plant: nothing said of what the region cannot hold.
+// Planted, seen: nothing said of what the region cannot hold.
 TEST(GranrunCase, AFeedThatFindsNoRoomSaysSo) {
   Scratch scratch;
   const auto hopper = [&](const std::string& keys) {
