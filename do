@@ -53,7 +53,7 @@ usage() {
               case: the whole moving bed of the paper beside LIGGGHTS' flow alone;
               front: every exchange source with a ladder of rays (--quick: 3 min; --full: four emissivities);
               scale: the parts of a run on one and two ranks, and a model of more (--full: a million spheres);
-              replicas: time and memory of large settled beds (--full: ten million spheres, 19 GB);
+              replicas: time and memory of large settled beds (--full: ten million spheres, 22 GB);
               forecast: what granrun check foresees beside what a run takes
   hard-cases  makes docs/hard-cases.md: every exchange source on the cases that break others
 EOF

@@ -5,7 +5,7 @@ conduction, global lines and traced paths, frames, and going on from one. Time a
 Usage: replicas.py [--quick | --full] GRANRUN FOLDER
 
 Each bed is 100 DEM steps with one update of its source; then the run with paths goes on for 100 more. --quick: 50 000 and
-200 000 spheres; the default: 200 000 and a million; --full: ten million as well (19 GB of memory, 6 GB of disk).
+200 000 spheres; the default: 200 000 and a million; --full: ten million as well (22 GB of memory, 6 GB of disk).
 """
 import os, pathlib, shutil, subprocess, sys
 
