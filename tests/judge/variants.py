@@ -185,7 +185,7 @@ def can_be_opened(scene):
 def few_bodies(scene):
     """Moving beds are chaotic, but not two or three spheres within a few collisions."""
     return 0 < len(scene["particles"]) <= 2 and scene["engine"] == "native" and scene["source"] == "none" \
-        and not scene["remove"] and scene["dem"].get("precision") is None \
+        and not scene["remove"] and not scene["feed"] and scene["dem"].get("precision") is None \
         and not any("velocity_m_s" in wall for wall in scene["walls"].values())
 
 
