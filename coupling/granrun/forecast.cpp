@@ -3,12 +3,12 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 
 #include "coupling/simulation/heat_model.h"
 #include "coupling/validate/update_cost.h"
+#include "dem/base/clock.h"
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
 
@@ -22,10 +22,6 @@ constexpr double rays_of_a_trial = 4e6, walks_of_a_trial = 1e6;
 constexpr std::size_t most_particles_tried = 20000;
 constexpr double bytes_per_particle = 700;  // columns, lists, contacts and conductances of a dense bed
 constexpr double frame_bytes_per_particle = 330;
-
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// Without the longest tenth, in which other programs had their turn.
 double undisturbed_mean(std::vector<double> values) {
@@ -93,9 +89,9 @@ double seconds_of_a_solve(const Case& c, const Bed& bed, int threads) {
   HeatModel heat(trial, threads);
   heat.start(bed);
   heat.draw_radiation(bed, 0);
-  const double start = now_s();
+  const double start = monotonic_s();
   heat.draw_radiation(bed, 0);
-  return now_s() - start;
+  return monotonic_s() - start;
 }
 
 }  // namespace
@@ -130,7 +126,7 @@ Forecast forecast(const Case& c, Simulation& simulation, int threads) {
     trial.start();
     trial.advance();  // lists are made, threads started
     std::vector<double> flow, conduction;
-    for (const double start = now_s(); now_s() - start < trial_s && !trial.finished();) {
+    for (const double start = monotonic_s(); monotonic_s() - start < trial_s && !trial.finished();) {
       const PartSeconds before = trial.seconds();
       trial.advance();
       flow.push_back(trial.seconds().flow - before.flow);
@@ -167,9 +163,9 @@ std::vector<SourceCost> source_costs(const Case& c, const Bed& bed, int threads)
     try {
       HeatModel heat(trial, threads);
       heat.start(bed);
-      const double start = now_s();
+      const double start = monotonic_s();
       const auto drawn = heat.draw_radiation(bed, 0);
-      const double spent = now_s() - start, heat_W = std::abs(drawn.all.isothermal_wall_heat_W),
+      const double spent = monotonic_s() - start, heat_W = std::abs(drawn.all.isothermal_wall_heat_W),
                    error = drawn.all.isothermal_wall_heat_error_W;
       if (heat_W > 0 && error > 0)
         costs.push_back({to_string(kind), spent * std::pow(error / heat_W / wanted, 2), wanted});

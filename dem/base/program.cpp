@@ -1,4 +1,5 @@
 #include "dem/base/program.h"
+#include "dem/base/clock.h"
 
 #include <fmt/core.h>
 #include <malloc.h>
@@ -7,7 +8,6 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -35,10 +35,6 @@ void remember_checkpoint(int) {
   checkpoint_wanted = true;
 }
 
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 std::string duration_text(double seconds) {
   if (seconds < 60) return fmt::format("{:.0f} s", seconds);
   const long s = static_cast<long>(seconds + 0.5);
@@ -46,7 +42,7 @@ std::string duration_text(double seconds) {
   return fmt::format("{}:{:02} h", s / 3600, s / 60 % 60);
 }
 
-const double started_s = now_s();
+const double started_s = monotonic_s();
 
 /// Lines of at most `width` columns, broken at spaces; what goes on is set in by four.
 std::string broken(const std::string& text, std::size_t width) {
@@ -125,12 +121,12 @@ std::string resources_used() {
     return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
   };
   return fmt::format("{:.2f} s of computing on all threads, {:.2f} s by the clock, {:.0f} MB at most",
-                     seconds(used.ru_utime) + seconds(used.ru_stime), now_s() - started_s,
+                     seconds(used.ru_utime) + seconds(used.ru_stime), monotonic_s() - started_s,
                      static_cast<double>(used.ru_maxrss) / 1024);
 }
 
 double wall_seconds() {
-  return now_s() - started_s;
+  return monotonic_s() - started_s;
 }
 
 double remaining_seconds(double done_first, double since_first_s, double done, double total) {
@@ -139,7 +135,7 @@ double remaining_seconds(double done_first, double since_first_s, double done, d
 }
 
 Progress::Progress(std::string what, double total, bool quiet)
-    : what_(std::move(what)), total_(total), started_s_(now_s()), quiet_(quiet), terminal_(isatty(2)) {
+    : what_(std::move(what)), total_(total), started_s_(monotonic_s()), quiet_(quiet), terminal_(isatty(2)) {
   if (!terminal_) printed_s_ = started_s_ - 20;  // first line after 10 s
 }
 
@@ -149,7 +145,7 @@ Progress::~Progress() {
 
 void Progress::update(double done, const std::string& detail) {
   if (quiet_) return;
-  const double now = now_s();
+  const double now = monotonic_s();
   if (first_s_ < 0) first_done_ = done, first_s_ = now;
   if (now - printed_s_ < (terminal_ ? 0.2 : 30.0)) return;
   printed_s_ = now;
@@ -162,8 +158,8 @@ void Progress::finish(const std::string& detail) {
 }
 
 void Progress::print(double done, const std::string& detail, bool last) {
-  const double elapsed = now_s() - started_s_, part = total_ > 0 ? done / total_ : 1,
-               left = remaining_seconds(first_done_, now_s() - first_s_, done, total_);
+  const double elapsed = monotonic_s() - started_s_, part = total_ > 0 ? done / total_ : 1,
+               left = remaining_seconds(first_done_, monotonic_s() - first_s_, done, total_);
   std::string line = fmt::format("{} {:5.1f} %", what_, 100 * part);
   if (last)
     line += fmt::format("  in {}", duration_text(elapsed));

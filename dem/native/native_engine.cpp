@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <cmath>
 
+#include "dem/base/clock.h"
 #include "dem/base/error.h"
 #include "dem/engine_native.h"
 #include "dem/native/bed_transfer.h"
@@ -39,10 +39,6 @@ int useful_threads(int most, std::int64_t particles) {
   const std::int64_t useful = particles / particles_each;
   if (useful >= most) return most;
   return std::max(1, static_cast<int>(std::bit_floor(static_cast<std::uint64_t>(useful))));
-}
-
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 }  // namespace
@@ -228,7 +224,7 @@ void NativeEngine::advance(Bed& bed, double until_s) {
   std::int64_t step = bed.step;
   while (step < last) {
     if (e.choice.threads() != e.lists->threads()) e.lists->deal(e.choice.threads(), e.rows, *e.surface);
-    const double opens = next_opening_s(e.walls, clock.time_s(step)), started_s = now_s();
+    const double opens = next_opening_s(e.walls, clock.time_s(step)), started_s = monotonic_s();
     auto steps = std::min(last - step, e.lists->prepare(e.rows, e.model, *e.periods, bed, *e.surface));
     steps = e.choice.longest_piece(steps);
     if (opens < clock.time_s(step + steps))
@@ -238,7 +234,7 @@ void NativeEngine::advance(Bed& bed, double until_s) {
     step += done;
     e.lists->spend(done, limit_broken);
     e.check_overlaps(bed);
-    const double ended_s = now_s();
+    const double ended_s = monotonic_s();
     e.choice.spent(done, ended_s - started_s, ended_s);
     if (clock.time_s(step) >= opens) {
       e.surface->set_time(e.walls, clock.time_s(step));

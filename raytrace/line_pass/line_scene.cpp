@@ -9,10 +9,10 @@
 
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
-#include "dem/base/morton.h"
 #include "dem/bed/wall_shape.h"
 #include "raytrace/embree/embree_tracer.h"
 #include "raytrace/facets.h"
+#include "raytrace/morton.h"
 #include "raytrace/wall_patches.h"
 
 namespace granrad {

@@ -9,9 +9,9 @@
 #include <numeric>
 
 #include "dem/base/error.h"
-#include "dem/base/morton.h"
 #include "dem/base/random.h"
 #include "dem/ranks/ranks.h"
+#include "raytrace/morton.h"
 #include "raytrace/rays/hit_tally.h"
 #include "raytrace/rays/ray_monitor.h"
 #include "raytrace/rays/ray_row.h"

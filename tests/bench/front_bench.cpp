@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "dem/base/clock.h"
 #include "dem/page/html_report.h"
 #include "tests/bench/front_case.h"
 
@@ -169,7 +170,7 @@ int main(int argc, char** argv) {
       "traced paths, whose noise is taken out. Sources by view factors take one radiosity for each sphere and each patch of "
       "an adiabatic wall, tables one for each wall: that is their bias with many rays. The paper's scheme: printed cubics, rows normalised, four walls dropped, "
       "dense LU where surfaces are grey. T(5 s): of the rise. h: of a plug flow, 0.1 to 0.3 s.");
-  const double begin = cpu_seconds();
+  const double begin = cpu_s();
   std::string verdicts;
   for (const double phi : quick ? std::vector{0.25} : std::vector{0.07, 0.25, 0.43})
     for (const double emissivity : full ? std::vector{0.1, 0.4, 0.7, 1.0} : std::vector{0.4, 1.0}) {
@@ -197,6 +198,6 @@ int main(int argc, char** argv) {
       for (const auto& p : points) rows.push_back(cells(p));
       page.table(header, rows);
     }
-  fmt::print("\n{}\n{:.0f} s of CPU\n", verdicts, cpu_seconds() - begin);
+  fmt::print("\n{}\n{:.0f} s of CPU\n", verdicts, cpu_s() - begin);
   page.write(folder / "front.html");
 }

@@ -5,11 +5,11 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
 #include "coupling/simulation/radiation_source.h"
 #include "coupling/simulation/simulation.h"
 #include "coupling/validate/compare_sources.h"
+#include "dem/base/clock.h"
 #include "dem/base/constants.h"
 #include "raytrace/rays/view_factors.h"
 #include "tests/source_dir.h"
@@ -41,9 +41,9 @@ double dense_lu_seconds(std::size_t surfaces) {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(n, n) * 2;
   for (Eigen::Index i = 0; i < n; ++i) matrix(i, (i * 7 + 3) % n) -= 0.5;
   const Eigen::VectorXd right = Eigen::VectorXd::Ones(n);
-  const double begin = cpu_seconds();
+  const double begin = cpu_s();
   const Eigen::VectorXd solution = matrix.partialPivLu().solve(right);
-  return solution.allFinite() ? cpu_seconds() - begin : 0;
+  return solution.allFinite() ? cpu_s() - begin : 0;
 }
 
 Enclosure enclosure_of(const Case& c, const Bed& bed) {
@@ -111,12 +111,6 @@ double rms(const std::vector<double>& a, const std::vector<double>& b) {
 
 }  // namespace
 
-double cpu_seconds() {
-  timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 std::vector<Contender> contenders(bool few) {
   std::vector<Contender> all;
   const auto ladder = [&](const char* name, RadiationKind kind, std::vector<double> rays, double in_time) {
@@ -166,7 +160,7 @@ FrontCase::FrontCase(double phi, double eps, double all_walks)
       six_(scene(false, "static")),
       two_(scene(true, "static")),
       bed_(Flow(six_.flow).first_bed()) {
-  const double begin = cpu_seconds();
+  const double begin = cpu_s();
   for (const int k : {0, 1})
     half_[k] = draw(six_, bed_, {"paths", settings(RadiationKind::paths, walks / 2)}, 9001 + k);
   for (const bool patches : {false, true})
@@ -175,7 +169,7 @@ FrontCase::FrontCase(double phi, double eps, double all_walks)
       lines.patches = patches;
       geometry_[patches][k] = draw(six_, bed_, {"lines", lines}, 9003 + k);
     }
-  reference_seconds = cpu_seconds() - begin;
+  reference_seconds = cpu_s() - begin;
   mean_heat_W = 0;
   for (std::size_t i = 0; i < bed_.size(); ++i)
     mean_heat_W += 0.5 * (half_[0].heat_W[i] + half_[1].heat_W[i]) / static_cast<double>(bed_.size());
@@ -194,9 +188,9 @@ double FrontCase::bare_embree_seconds(double error_pct) const {
   options.sampling = Sampling::plain;
   options.threads = 1;
   const Enclosure enclosure = enclosure_of(six_, bed_);
-  const double begin = cpu_seconds();
+  const double begin = cpu_s();
   const HitCounts counts = trace_view_factors(enclosure, options);
-  const double spent = cpu_seconds() - begin;
+  const double spent = cpu_s() - begin;
   double rays = 0, variance = 0, mean = 0;
   for (const auto n : counts.launched) rays += static_cast<double>(n);
   const double n = static_cast<double>(bed_.size());
@@ -220,9 +214,9 @@ FrontCase::Point FrontCase::measure(const Contender& contender) const {
   for (std::uint64_t seed = 1; seed <= most_draws; ++seed) {
     if (seed > 3 && spent > enough_s) break;
     if (seed == 3 && seconds[0] > long_s) break;
-    const double begin = cpu_seconds();
+    const double begin = cpu_s();
     draws.push_back(draw(c, bed_, contender, seed));
-    seconds.push_back(cpu_seconds() - begin);
+    seconds.push_back(cpu_s() - begin);
     spent += seconds.back();
     walls.push_back(hot_walls(c, bed_, draws.back()) / wall_heat_W - 1);
   }

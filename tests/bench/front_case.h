@@ -62,6 +62,4 @@ class FrontCase {
   RadiativeHeat geometry_[2][2];
 };
 
-double cpu_seconds();
-
 }  // namespace granrad

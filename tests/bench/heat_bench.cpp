@@ -7,10 +7,10 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <ctime>
 #include <filesystem>
 
 #include "coupling/heat/radiosity.h"
+#include "dem/base/clock.h"
 #include "dem/base/constants.h"
 #include "dem/packing/packing.h"
 #include "raytrace/paths/path_source.h"
@@ -22,20 +22,14 @@ namespace {
 
 constexpr double radius_m = 4e-4, emissivity = 0.4, hot_K = 1000, cold_K = 300;
 
-double cpu_seconds() {
-  timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 /// Shortest of several runs.
 template <class Work>
 double seconds(int repeats, Work work) {
   double best = INFINITY;
   for (int k = 0; k < repeats; ++k) {
-    const double begin = cpu_seconds();
+    const double begin = cpu_s();
     work();
-    best = std::min(best, cpu_seconds() - begin);
+    best = std::min(best, cpu_s() - begin);
   }
   return best;
 }

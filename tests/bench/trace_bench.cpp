@@ -6,15 +6,14 @@
 #include <fmt/format.h>
 #include <fmt/os.h>
 
-#include <chrono>
 #include <cmath>
 #include <cstring>
-#include <ctime>
 #include <fstream>
 #include <numeric>
 #include <optional>
 #include <random>
 
+#include "dem/base/clock.h"
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
 #include "dem/bed/near_pairs.h"
@@ -31,16 +30,6 @@ using namespace granrad;
 namespace {
 
 constexpr double radius = 4e-4;
-
-double cpu_seconds() {
-  timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-double wall_seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// Peak memory since the last reset, MiB (Linux: VmHWM).
 double peak_MiB(bool reset = false) {
@@ -248,10 +237,10 @@ Result bare_embree(const Case& c, double rays_per_particle, unsigned seed) {
   const std::size_t n = c.count;
   Result r{std::vector<double>(c.near.size(), 0), std::vector<double>(n, 0), std::vector<double>(n, 0)};
   peak_MiB(true);
-  const double before = cpu_seconds();
+  const double before = cpu_s();
   const BareEmbree tracer(c.bed);
   const Emitter emitter(c.bed);
-  r.build_s = cpu_seconds() - before;
+  r.build_s = cpu_s() - before;
   std::mt19937_64 generator(seed);
   std::uniform_real_distribution<double> u(0, 1);
   std::vector<std::vector<std::pair<std::int64_t, std::size_t>>> watched(n);  // near partners of each sphere
@@ -262,16 +251,16 @@ Result bare_embree(const Case& c, double rays_per_particle, unsigned seed) {
   const std::size_t batch = std::max<std::size_t>(1, 20000 / static_cast<std::size_t>(rays));
   for (std::size_t from = 0; from < n; from += batch) {
     const std::size_t to = std::min(n, from + batch);
-    const double start = cpu_seconds();
+    const double start = cpu_s();
     starts.clear(), ends.clear();
     for (std::size_t i = from; i < to; ++i)
       for (std::int64_t k = 0; k < rays; ++k)
         starts.push_back(emitter.emit(static_cast<std::int32_t>(i), u(generator), u(generator), u(generator),
                                       u(generator)));
-    const double generated = cpu_seconds();
+    const double generated = cpu_s();
     for (std::size_t k = 0; k < starts.size(); ++k)
       ends.push_back(tracer.hit(from + k / static_cast<std::size_t>(rays), starts[k]));
-    const double traced = cpu_seconds();
+    const double traced = cpu_s();
     r.seconds += traced - start, r.trace_s += traced - generated;
     for (std::size_t k = 0; k < ends.size(); ++k) {
       const std::size_t i = from + k / static_cast<std::size_t>(rays);
@@ -320,9 +309,9 @@ Result embree_sobol(const Case& c, double rays_per_particle, std::uint64_t seed)
   o.seed = seed;
   o.threads = 1;
   peak_MiB(true);
-  const double start = cpu_seconds();
+  const double start = cpu_s();
   const HitCounts counts = trace_view_factors(c.bed, o);
-  r.seconds = cpu_seconds() - start;
+  r.seconds = cpu_s() - start;
   r.memory_MiB = peak_MiB();
   for (auto launched : counts.launched) r.rays += static_cast<double>(launched);
   read_rows(
@@ -342,9 +331,9 @@ Result lines_matrix(const Case& c, int directions, std::uint64_t seed) {
   Result r;
   LineReport report;
   peak_MiB(true);
-  const double start = cpu_seconds();
+  const double start = cpu_s();
   const ExchangeAreas x = sweep_exchange_areas(c.bed, line_options(directions, seed), &report);
-  r.seconds = cpu_seconds() - start;
+  r.seconds = cpu_s() - start;
   r.memory_MiB = peak_MiB();
   r.rays = static_cast<double>(report.ray_equivalents);
   read_rows(
@@ -368,9 +357,9 @@ Result lines_heat(const Case& c, int directions, std::uint64_t seed, double line
   LineOptions o = line_options(directions, seed);
   o.lines_per_disc = lines_per_disc;
   peak_MiB(true);
-  const double start = cpu_seconds();
+  const double start = cpu_s();
   const auto q = sweep_black_heat(c.bed, hot_walls(c), o);
-  r.seconds = cpu_seconds() - start;
+  r.seconds = cpu_s() - start;
   r.memory_MiB = peak_MiB();
   r.rays = ends_per_direction(c, lines_per_disc) * directions * o.replicates;
   const double area = 4 * pi * radius * radius;
@@ -381,18 +370,18 @@ Result lines_heat(const Case& c, int directions, std::uint64_t seed, double line
 /// Pairs handed out and forgotten: what the sweep alone costs.
 Result lines_pairs(const Case& c, int directions) {
   Result r;
-  const double before = cpu_seconds();
+  const double before = cpu_s();
   const LineScene scene(c.bed, 12);
   LinePass pass(scene);
-  r.build_s = cpu_seconds() - before;
+  r.build_s = cpu_s() - before;
   std::int64_t integers = 0, ends = 0;
-  const double start = cpu_seconds();
+  const double start = cpu_s();
   for (int k = 0; k < directions; ++k) {
     pass.aim(line_frame(1, 0, k, directions));
     pass.emit([&](const std::int32_t* p, const std::int32_t* end) { integers += end - p; },
               [&](std::int32_t, const std::int32_t*, std::int64_t n) { ends += n; });
   }
-  r.seconds = cpu_seconds() - start;
+  r.seconds = cpu_s() - start;
   r.rays = integers + ends > 0 ? ends_per_direction(c, 12) * directions : 0;
   return r;
 }
@@ -610,13 +599,13 @@ void per_ray(Book& book, const Case& c) {
   std::vector<std::int64_t> bare_end(starts.size()), our_end(starts.size());
   double bare_s = 1e300, our_s = 1e300, trace_s = 1e300, traced = 0;
   for (int repeat = 0; repeat < 3; ++repeat) {
-    const double start = cpu_seconds();
+    const double start = cpu_s();
     for (std::size_t k = 0; k < starts.size(); ++k)
       bare_end[k] = bare.hit(static_cast<std::size_t>(from[k]), starts[k]);
-    const double middle = cpu_seconds();
+    const double middle = cpu_s();
     for (std::size_t k = 0; k < starts.size(); ++k)
       our_end[k] = ours.first_end(starts[k].origin_m, starts[k].direction, from[k], starts[k].normal).surface;
-    const double end = cpu_seconds();
+    const double end = cpu_s();
     bare_s = std::min(bare_s, middle - start), our_s = std::min(our_s, end - middle);
     const Result whole = embree_sobol(c, static_cast<double>(rays), 1);
     trace_s = std::min(trace_s, whole.seconds), traced = whole.rays;
@@ -635,9 +624,9 @@ void two_threads(Book& book, const Case& c) {
   double best[2] = {1e300, 1e300};
   for (int repeat = 0; repeat < 5; ++repeat)
     for (int threads = 1; threads <= 2; ++threads) {
-      const double start = wall_seconds();
+      const double start = monotonic_s();
       sweep_black_heat(c.bed, hot_walls(c), line_options(directions, 1, threads));
-      best[threads - 1] = std::min(best[threads - 1], wall_seconds() - start);
+      best[threads - 1] = std::min(best[threads - 1], monotonic_s() - start);
     }
   book.versus(c.name() + "/two_threads", best[1], "one_thread", best[0], "s", true);
 }
