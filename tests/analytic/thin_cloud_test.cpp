@@ -91,7 +91,7 @@ TEST(ThinCloud, TheExactFluxIsThatOfTheTables) {
 }
 
 // Checks emission, tracing, periods, closure and the solution together, to 0.2 % and two errors of the mean over
-// the beds; no error was planted here yet.
+// the beds. Planted, seen: directions uniform over the hemisphere (6.7 % low).
 TEST(ThinCloud, TracedCloudsTendToItLong) {
   for (const double depth : {0.5, 1.0}) {
     double extrapolated = 0, squares = 0;
