@@ -1,8 +1,8 @@
 // Requirement: re-radiating walls in patches give the heats of traced paths, which return light where it fell; with one
 // radiosity for each wall they do not. Black spheres fill the lower part of a box whose floor is hot and whose side walls
 // re-radiate, so that light on them is uneven. All three ways to view factors, walls' heats reported for whole walls.
-// Planted, seen to fail: patches of a wall joined to one again (all), patch at the start of a ray in place of its end
-// (embree), faces of one patch given to the next (lines).
+// Planted, seen to fail: whole walls (340 %, tested), sides of the cuts swapped in the search (embree, shading). Blind to
+// patches of one size renumbered.
 #include <gtest/gtest.h>
 
 #include <cmath>

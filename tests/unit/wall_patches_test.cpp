@@ -1,6 +1,5 @@
 // Requirement: walls are cut into patches that tile them, no longer than asked; points know their patch; walls that are
-// not to be cut stay as they are. Planted, seen to fail: sides swapped in the search (points in the wrong patch); the
-// second half of a cut dropped (areas).
+// not to be cut stay as they are. Planted, seen to fail: sides swapped in the search (points in the wrong patch).
 #include "raytrace/wall_patches.h"
 
 #include <gtest/gtest.h>
