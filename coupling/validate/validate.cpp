@@ -98,7 +98,11 @@ NamedBed bed_from(const Case& c, const fs::path& snapshot) {
   NamedBed named{snapshot.filename().string(), {}, c};
   named.c.flow.particle_file = snapshot;
   named.c.flow.feed = {};
-  named.bed = initial_bed(named.c.flow);
+  std::size_t left_out = 0;
+  named.bed = initial_bed(named.c.flow, &left_out);
+  if (left_out > 0)
+    fmt::print(stderr, "note: {}: {} particles with their centre outside the box were left out\n", named.name,
+               left_out);
   named.bed.time_s = 0;
   named.bed.step = 0;
   return named;

@@ -103,17 +103,25 @@ bool bounds(const Scene& scene, const Wall& face, const Vec3& p) {
   return true;
 }
 
-void refuse_particles_behind_walls(const Scene& scene, const Bed& bed) {
-  std::vector<std::int64_t> outside;
-  std::size_t count = 0;
+/// [particles] of those whose centre is behind no wall of the box.
+std::vector<char> between_walls(const Scene& scene, const Bed& bed) {
+  std::vector<char> inside(bed.size(), 1);
   for (std::size_t i = 0; i < bed.size(); ++i) {
     const Vec3 p = wrapped_into_box(bed, bed.position_m[i]);
     const auto behind = [&](const Wall& wall) {
       return wall.contact && plane_of(wall)->height(p) < 0 && bounds(scene, wall, p);
     };
-    if (std::none_of(scene.walls.begin(), scene.walls.begin() + scene.box_wall_count, behind)) continue;
-    if (count++ < examples_shown) outside.push_back(bed.id[i]);
+    inside[i] = std::none_of(scene.walls.begin(), scene.walls.begin() + scene.box_wall_count, behind);
   }
+  return inside;
+}
+
+void refuse_particles_behind_walls(const Scene& scene, const Bed& bed) {
+  const std::vector<char> inside = between_walls(scene, bed);
+  std::vector<std::int64_t> outside;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < bed.size(); ++i)
+    if (!inside[i] && count++ < examples_shown) outside.push_back(bed.id[i]);
   if (count > 0)
     throw InputError(
         fmt::format("{}: {} particles lie outside the walls of the box, ids {}{} (their centres are behind "
@@ -180,13 +188,18 @@ void take_into_scene(Snapshot& snapshot, const Scene& scene) {
     std::fill(bed.temperature_K.begin(), bed.temperature_K.end(), scene.particle_temperature_K);
 }
 
-Bed initial_bed(const Scene& scene) {
+Bed initial_bed(const Scene& scene, std::size_t* left_out) {
   Bed bed;
   if (!scene.particle_file.empty()) take_particles(scene, bed);
   bed.materials = scene.materials;
   bed.walls = scene.walls;
   bed.periodic = scene.periodic;
   bed.box = scene.box;
+  if (left_out) {
+    const std::vector<char> inside = between_walls(scene, bed);
+    *left_out = static_cast<std::size_t>(std::count(inside.begin(), inside.end(), 0));
+    if (*left_out > 0) bed.remove_unless(inside);
+  }
   refuse_particles_behind_walls(scene, bed);
   refuse_deep_overlaps(scene, bed);
   return bed;

@@ -87,6 +87,7 @@ void take_into_scene(Snapshot& snapshot, const Scene& scene);
 /// scene's). Throws InputError when a centre lies behind a contact wall of the box (count and first ten ids),
 /// when two particles overlap by more than a tenth of the smaller radius, or when the file names a material
 /// the scene lacks.
-Bed initial_bed(const Scene& scene);
+/// `left_out`: particles behind walls of the box are left out and counted; without it they are refused.
+Bed initial_bed(const Scene& scene, std::size_t* left_out = nullptr);
 
 }  // namespace granrad
