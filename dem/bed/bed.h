@@ -32,9 +32,9 @@ struct Bed {
   std::vector<double> radius_m;
   std::vector<double> temperature_K;
   std::vector<double> radiative_heat_W;  ///< received, held from one radiation update to the next
-  std::vector<double> solid_heat_W;      ///< received in the last heat step through contacts, for those who look
-  std::vector<double> gas_heat_W;        ///< and through the gas
-  std::vector<std::int32_t> material;    ///< index into `materials`
+  std::vector<double> solid_heat_W;  ///< received in the last heat step through contacts, for those who look
+  std::vector<double> gas_heat_W;    ///< and through the gas
+  std::vector<std::int32_t> material;  ///< index into `materials`
 
   std::vector<ContactMemory> contacts;  ///< sorted by (first, second)
   std::vector<Material> materials;

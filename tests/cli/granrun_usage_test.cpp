@@ -59,8 +59,7 @@ TEST(GranrunUsage, PrintsInTheUnitsOfTheScene) {
   const auto scene = scratch.write(
       "plug.toml", edited(edited(small_plug, "velocity_m_s = 0.1\n", "mass_flow_kg_s = '1.2 g/s'\n"),
                           "temperature_K = 300", "temperature_K = '27 degC'"));
-  const auto run =
-      granrun(scratch, "run " + scene.string() + " -o " + (scratch.root / "out").string());
+  const auto run = granrun(scratch, "run " + scene.string() + " -o " + (scratch.root / "out").string());
   ASSERT_EQ(run.code, 0) << run.err;
   for (const char* text : {" g/s\n", "degC in the region\n", "heat from y_min (726.85 degC)"})
     EXPECT_NE(run.out.find(text), std::string::npos) << text << "\n" << run.out;

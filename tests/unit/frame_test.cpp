@@ -141,7 +141,8 @@ TEST_F(Frame, HoldsTheVtkStructureViewersRead) {
   EXPECT_EQ(in.read<std::int64_t>("/VTKHDF/Connectivity"), (std::vector<std::int64_t>{0, 1, 2, 3, 4}));
   EXPECT_EQ(in.read<std::uint8_t>("/VTKHDF/Types"), std::vector<std::uint8_t>(5, 1));
   EXPECT_EQ(in.read<double>("/VTKHDF/Points", 3).size(), 15u);
-  for (const char* name : {"id", "radius", "temperature", "v", "omega", "q_rad", "q_ss", "q_sfs", "material", "h"})
+  for (const char* name :
+       {"id", "radius", "temperature", "v", "omega", "q_rad", "q_ss", "q_sfs", "material", "h"})
     EXPECT_TRUE(in.has(std::string("/VTKHDF/PointData/") + name)) << name;
   EXPECT_FALSE(in.text_attribute("/granrad", "git_sha").empty());
 }
