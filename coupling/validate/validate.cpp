@@ -100,9 +100,17 @@ NamedBed bed_from(const Case& c, const fs::path& snapshot) {
   named.c.flow.feed = {};
   std::size_t left_out = 0;
   named.bed = initial_bed(named.c.flow, &left_out);
+  const auto inside = in_region(named.bed, named.c.flow.region);  // the others neither conduct nor radiate
+  left_out += static_cast<std::size_t>(std::count(inside.begin(), inside.end(), 0));
+  named.bed.remove_unless(inside);
+  if (left_out > 0 && named.bed.size() == 0)
+    throw InputError(advised(
+        fmt::format("{}: all {} particles lie outside the box, or its region", snapshot.string(), left_out),
+        "give the box of that snapshot"));
   if (left_out > 0)
-    fmt::print(stderr, "note: {}: {} particles with their centre outside the box were left out\n", named.name,
-               left_out);
+    fmt::print(stderr,
+               "note: {}: {} particles with their centre outside the box, or its region, were left out\n",
+               named.name, left_out);
   named.bed.time_s = 0;
   named.bed.step = 0;
   return named;
