@@ -183,16 +183,12 @@ void HeatModel::advance(Bed& bed, double dt_s) {
 
 StateBlock HeatModel::save() const {
   StateBlock block;
-  visit_totals(
-      radiation_, [&](const char* name, std::int64_t value) { block.integers[name] = {value}; },
-      [&](const char* name, double value) { block.reals[name] = {value}; });
+  save_values(radiation_, block, visit_totals);
   return block;
 }
 
 void HeatModel::load(const StateBlock& radiation, const StateBlock& ledger) {
-  visit_totals(
-      radiation_, [&](const char* name, std::int64_t& value) { value = saved_integer(radiation, name); },
-      [&](const char* name, double& value) { value = saved_real(radiation, name); });
+  restore_values(radiation_, radiation, visit_totals);
   ledger_.load(ledger);
 }
 

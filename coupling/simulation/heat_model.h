@@ -28,8 +28,7 @@ struct RadiationTotals {
 };
 
 /// What a restart needs of the totals, by the names in frames.
-template <class Totals, class Integer, class Real>
-void visit_totals(Totals& totals, Integer integer, Real real) {
+inline constexpr auto visit_totals = [](auto& totals, auto integer, auto real) {
   integer("updates", totals.updates);
   integer("rays", totals.rays);
   integer("lost_rays", totals.lost_rays);
@@ -41,7 +40,7 @@ void visit_totals(Totals& totals, Integer integer, Real real) {
   real("reciprocity_rms", totals.reciprocity_rms);
   real("absolute_heat_W", totals.absolute_heat_W);
   real("limited_share", totals.limited_share);
-}
+};
 
 /// Heat of the bed: conduction and held radiation, one step at a time, with its ledger. Builds only
 /// what the scene needs: without radiation no source, without gas and contacts no pairs.

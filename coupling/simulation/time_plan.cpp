@@ -199,28 +199,30 @@ std::string end_note(const TimePlan& plan, double end_time_s) {
       end_time_s, plan.step_s, ends_s);
 }
 
+namespace {
+
+constexpr auto visit_plan = [](auto& plan, auto integer, auto real) {
+  integer("origin_step", plan.origin_step);
+  integer("steps_per_tick", plan.steps_per_tick);
+  integer("ticks_per_radiation", plan.ticks_per_radiation);
+  integer("ticks_per_row", plan.ticks_per_row);
+  integer("ticks_per_frame", plan.ticks_per_frame);
+  real("origin_s", plan.origin_s);
+  real("step_s", plan.step_s);
+};
+
+}  // namespace
+
 StateBlock TimePlan::save() const {
   StateBlock block;
-  block.integers["origin_step"] = {origin_step};
-  block.integers["steps_per_tick"] = {steps_per_tick};
-  block.integers["ticks_per_radiation"] = {ticks_per_radiation};
-  block.integers["ticks_per_row"] = {ticks_per_row};
-  block.integers["ticks_per_frame"] = {ticks_per_frame};
-  block.reals["origin_s"] = {origin_s};
-  block.reals["step_s"] = {step_s};
+  save_values(*this, block, visit_plan);
   block.reals["asked"] = asked;
   return block;
 }
 
 TimePlan TimePlan::restored(const StateBlock& block, double end_time_s) {
   TimePlan plan;
-  plan.origin_step = saved_integer(block, "origin_step");
-  plan.steps_per_tick = saved_integer(block, "steps_per_tick");
-  plan.ticks_per_radiation = saved_integer(block, "ticks_per_radiation");
-  plan.ticks_per_row = saved_integer(block, "ticks_per_row");
-  plan.ticks_per_frame = saved_integer(block, "ticks_per_frame");
-  plan.origin_s = saved_real(block, "origin_s");
-  plan.step_s = saved_real(block, "step_s");
+  restore_values(plan, block, visit_plan);
   plan.asked = saved_reals(block, "asked");
   if (!(plan.step_s > 0) || plan.steps_per_tick < 1 || plan.ticks_per_row < 1 || plan.ticks_per_frame < 1 ||
       plan.ticks_per_radiation < 0)

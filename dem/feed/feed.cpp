@@ -1,6 +1,7 @@
 #include "dem/feed/feed.h"
 
 #include <algorithm>
+#include <utility>
 #include <variant>
 
 #include "dem/base/constants.h"
@@ -100,33 +101,31 @@ const FeedTotals& Feed::totals() const {
   return impl_->totals;
 }
 
+namespace {
+
+constexpr auto visit_totals = [](auto& t, auto integer, auto real) {
+  real("mass_in_kg", t.mass_in_kg);
+  real("mass_out_kg", t.mass_out_kg);
+  real("heat_in_J", t.heat_in_J);
+  real("heat_out_J", t.heat_out_J);
+  real("heat_capacity_out_J_K", t.heat_capacity_out_J_K);
+  integer("inserted", t.inserted);
+  integer("removed", t.removed);
+  integer("nudged", t.nudged);
+  integer("waiting", t.waiting);
+};
+
+}  // namespace
+
 StateBlock Feed::save() const {
-  const FeedTotals& t = impl_->totals;
   StateBlock state;
-  state.reals["mass_in_kg"] = {t.mass_in_kg};
-  state.reals["mass_out_kg"] = {t.mass_out_kg};
-  state.reals["heat_in_J"] = {t.heat_in_J};
-  state.reals["heat_out_J"] = {t.heat_out_J};
-  state.reals["heat_capacity_out_J_K"] = {t.heat_capacity_out_J_K};
-  state.integers["inserted"] = {t.inserted};
-  state.integers["removed"] = {t.removed};
-  state.integers["nudged"] = {t.nudged};
-  state.integers["waiting"] = {t.waiting};
+  save_values(std::as_const(impl_->totals), state, visit_totals);
   std::visit([&](const auto& feed) { feed.save(state); }, impl_->feed);
   return state;
 }
 
 void Feed::load(const StateBlock& state) {
-  FeedTotals& t = impl_->totals;
-  t.mass_in_kg = saved_real(state, "mass_in_kg");
-  t.mass_out_kg = saved_real(state, "mass_out_kg");
-  t.heat_in_J = saved_real(state, "heat_in_J");
-  t.heat_out_J = saved_real(state, "heat_out_J");
-  t.heat_capacity_out_J_K = saved_real(state, "heat_capacity_out_J_K");
-  t.inserted = saved_integer(state, "inserted");
-  t.removed = saved_integer(state, "removed");
-  t.nudged = saved_integer(state, "nudged");
-  t.waiting = saved_integer(state, "waiting");
+  restore_values(impl_->totals, state, visit_totals);
   std::visit([&](auto& feed) { feed.load(state); }, impl_->feed);
 }
 
