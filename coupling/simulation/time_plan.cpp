@@ -100,6 +100,14 @@ void refuse_endless(std::vector<std::string>& problems, const char* what, double
         advised(fmt::format("the run would take {:.3g} {} (at most {:g})", count, what, most), advice));
 }
 
+/// Heat steps of a frozen bed are free to be long, but walls open between them: within 1 % of the time before.
+double shutter_step_s(const Case& c, double base_s) {
+  double first_s = infinity;
+  for (const Wall& wall : c.flow.walls)
+    if (wall.opens_at_s > 0) first_s = std::min(first_s, wall.opens_at_s);
+  return std::max(first_s / 100, base_s / 1000);
+}
+
 /// The DEM step, or the heat step of a frozen bed.
 double choose_step(const Case& c, const StepLimits& limits, double conduction_limit_s,
                    std::vector<std::string>& problems) {
@@ -107,7 +115,7 @@ double choose_step(const Case& c, const StepLimits& limits, double conduction_li
   if (!computes_forces(c.flow.engine)) {
     // contacts of a recording are not known ahead: room for four times those of its first snapshot
     const double room = c.flow.engine == EngineKind::replay ? 0.25 : 1;
-    return base / std::ceil(base / std::min(base, room * conduction_limit_s));
+    return base / std::ceil(base / std::min({base, room * conduction_limit_s, shutter_step_s(c, base)}));
   }
   if (!(c.flow.step_s > 0)) return dividing_step(base, std::min(limits.dem_s, base));
   refuse_beyond(problems, "dem.step_s", c.flow.step_s, limits.dem_s,

@@ -128,7 +128,8 @@ TEST(GranrunResults, SayWhatLiesOutsideTheRegion) {
   const auto checked = granrun(scratch, "check " + scene.string());
   ASSERT_EQ(checked.code, 0) << checked.err;
   EXPECT_NE(checked.out.find("outside the heat-transfer region: tray"), std::string::npos) << checked.out;
-  EXPECT_NE(checked.out.find("1 of 1 particles are outside"), std::string::npos) << checked.out;
+  EXPECT_NE(checked.out.find("1 of 1 particles lie outside the heat-transfer region"), std::string::npos)
+      << checked.out;
   EXPECT_NE(checked.out.find("walls isothermal: tray"), std::string::npos) << checked.out;
 }
 
@@ -169,7 +170,8 @@ TEST(GranrunResults, StraySpheresAreRemovedAndCounted) {
   for (std::size_t k = 0; k < 3; ++k) {
     left_kg += 0.1 * history.at("mass_flow_out_kg_s")[k];
     left_J += 0.1 * history.at("heat_out_W")[k];
-    EXPECT_LE(history.at("energy_defect")[k], 1e-12);
+    EXPECT_LE(history.at("energy_defect")[k], 1e-10)
+        << "nothing is received: rounding over 1e-5 of the energy";
   }
   EXPECT_NEAR(left_kg, mass, 1e-9 * mass);
   EXPECT_NEAR(left_J, mass * 800 * 400, 1e-9 * left_J);

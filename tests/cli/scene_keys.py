@@ -282,7 +282,7 @@ def add_rows_that_are_alike():
         KEYS[f"radiation.{name}"] = ("plug", [], [("radiation", f"{name} = {value}")])
     for kind, table in (("polygon[]", "[polygon]"), ("mesh[]", "[mesh]"), ("mesh[].solid.NAME", "mesh.solid.left")):
         for name, value in (("contact", "false"), ("velocity_m_s", "[0.2, 0, 0]"), ("opens_at_s", "0.001")):
-            low = [("[polygon]", "vertices_m = [[0, 0, 0.0001], [0.004, 0, 0.0001], [0.004, 0.005, 0.0001], [0, 0.005, 0.0001]]"), ("[mesh]", 'file = "floor.stl"'),
+            low = [("[polygon]", "vertices_m = [[0, 0, 0.00002], [0.004, 0, 0.00002], [0.004, 0.005, 0.00002], [0, 0.005, 0.00002]]"), ("[mesh]", 'file = "floor.stl"'),
                    ("dem", 'engine = "native"\nstep_s = 2e-5'), ("scene", "gravity_m_s2 = [0, 0, -9.81]\nend_time_s = 0.02"), ("radiation", 'source = "none"')]
             KEYS[f"{kind}.{name}"] = ("frozen", low[:1] + low[2:] if kind == "polygon[]" else low[1:], [(table, f"{name} = {value}")])
     for which, table in (("reference", "validate.reference"), ("compare[]", "[validate.compare]")):
@@ -302,7 +302,7 @@ def inputs(folder):
     rows = BED.splitlines()
     files = {"bed.csv": BED, "one.csv": "\n".join(rows[:2]) + "\n", "mixed.csv": "\n".join(r[:-1] + "1" if k and k % 2 else r for k, r in enumerate(rows)) + "\n",
              "lids.stl": square("left", 0, 0.002) + square("right", 0.002, 0.004), "one_lid.stl": square("left", 0, 0.002)}
-    files["floor.stl"] = re.sub(r"0\.005\n", "0.0001\n", files["lids.stl"].replace("0.0035", "0"))
+    files["floor.stl"] = re.sub(r"0\.005\n", "0.00002\n", files["lids.stl"].replace("0.0035", "0"))
     for name, step in (("flow", 1e-4), ("other", 2e-4)):
         for k in range(3):
             files[f"{name}.{k}.dump"] = f"ITEM: TIMESTEP\n{k * 500}\nITEM: TIME\n{k * 0.01}\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS ff ff ff\n0 0.004\n0 0.005\n0 0.006\n" \
