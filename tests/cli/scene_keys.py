@@ -208,6 +208,7 @@ KEYS = {
     "radiation.table": ("plug", [TABLE], [("radiation", REFIT)]),
     "radiation.wall_rows": ("plug", [TABLE], [("radiation", 'wall_rows = "traced"')]),
     "radiation.order": ("still", [LINES], [("radiation", "order = 2")]),
+    "radiation.wall_patches": ("still", [LINES], [("radiation", 'wall_patches = "whole"')]),
     "radiation.error": ("still", [("radiation", 'rays = "auto"\nerror = 0.05')], [("radiation", "error = 0.3")]),
     "radiation.closure": ("still", [LINES], [("radiation", 'closure = "row_sum"')]),
     "box.origin_m": ("plug", [], [("box", "origin_m = [0.001, 0, 0]")]),
@@ -288,6 +289,7 @@ def add_rows_that_are_alike():
     for which, table in (("reference", "validate.reference"), ("compare[]", "[validate.compare]")):
         for name, needed, change in (("source", "", 'source = "embree"'), ("rays", "", "rays = 200"), ("seed", "", "seed = 7"),
                                      ("order", 'source = "lines"\nrays = 500', "order = 1"), ("closure", 'source = "lines"\nrays = 500', 'closure = "row_sum"'),
+                                     ("wall_patches", 'source = "lines"\nrays = 500', 'wall_patches = "whole"'),
                                      ("table", TABLE[1], REFIT), ("wall_rows", TABLE[1], 'wall_rows = "traced"')):
             plug = name in ("table", "wall_rows")  # a bed of stated solid fraction
             besides = LADDER + ([(table, needed)] if needed else []) + ([("dem", 'engine = "none"\nstep_s = '), ("conduction", "solid = ")] if plug else [])
