@@ -83,7 +83,8 @@ bool is_done(const std::filesystem::path& where, const Case& c) {
   if (!CaseFolder::holds_case(where) || !is_finished(where)) return false;
   const CaseFolder folder(where);
   const auto record = read_run_record(folder);
-  const auto& times = read_history(folder.history()).at("time_s");
+  const History history = read_history(folder.history());
+  const auto& times = history.at("time_s");
   const double rounding = 1e-9 * record.end_time_s;
   return !times.empty() && std::abs(times.back() - record.end_time_s) <= rounding &&
          read_case(where / "scene.toml", {}).effective_text == c.portable_text &&
