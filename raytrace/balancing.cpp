@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
 #include "dem/base/error.h"
 #include "dem/base/program.h"
+#include "raytrace/conjugate_gradients.h"
 
 namespace granrad {
 
@@ -34,10 +34,6 @@ Values times(const ExchangeAreas& x, const Values& v, bool only_closing) {
     product[i] = sum;
   }
   return product;
-}
-
-double dot(const Values& a, const Values& b) {
-  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
 class Newton {
@@ -87,19 +83,8 @@ class Newton {
     Values left(row_.size(), 0);
     for (std::size_t i = 0; i < left.size(); ++i)
       if (closes(x_, i)) left[i] = (x_.area_m2[i] - row_[i]) / std::sqrt(row_[i]);
-    Values y(left.size(), 0), search = left;
-    double square = dot(left, left);
-    const double goal = enough * enough * square;
-    for (int k = 0; k < most_iterations && square > goal; ++k) {
-      const Values image = hessian(search);
-      const double curvature = dot(search, image);
-      if (!(curvature > 0)) break;
-      const double length = square / curvature;
-      for (std::size_t i = 0; i < y.size(); ++i) y[i] += length * search[i], left[i] -= length * image[i];
-      const double now = dot(left, left);
-      for (std::size_t i = 0; i < y.size(); ++i) search[i] = left[i] + now / square * search[i];
-      square = now;
-    }
+    Values y =
+        conjugate_gradients(left, enough, most_iterations, [&](const Values& v) { return hessian(v); });
     for (std::size_t i = 0; i < y.size(); ++i)
       if (closes(x_, i)) y[i] /= std::sqrt(row_[i]);
     return y;

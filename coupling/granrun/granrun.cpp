@@ -238,10 +238,7 @@ void add_export(CLI::App& app, Arguments& a, Body& body) {
 
 int granrun(int argc, char** argv) {
   CLI::App app{"granrun: granular flows heated by conduction and radiation", "granrun"};
-  app.set_version_flag("--version", fmt::format("granrun {} ({})", program_version(), program_git_sha()));
-  app.require_subcommand(1);
   set_manners(app);
-  app.set_help_all_flag("--help-all", "help of every subcommand");
   app.footer(
       "Exit codes: 0 ok, 1 numerical failure, 2 usage or input,\n"
       "3 file cannot be read or written, 4 threshold missed,\n"
@@ -255,17 +252,13 @@ int granrun(int argc, char** argv) {
   add_new(app, body);
   add_keys(app, body);
   join_ranks();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return usage_exit(app, error, argc, argv);
-  }
-  if (const auto name = app.get_subcommands().front()->get_name(); name != "run")
-    refuse_several_ranks("granrun " + name);
-  apply(a, argc, argv);
-  const int code = body();
-  if (a.verbose) fmt::print(stderr, "granrun: {}\n", resources_used());
-  return code;
+  return run_command(app, argc, argv, [&](const std::string& command) {
+    if (command != "run") refuse_several_ranks("granrun " + command);
+    apply(a, argc, argv);
+    const int code = body();
+    if (a.verbose) fmt::print(stderr, "granrun: {}\n", resources_used());
+    return code;
+  });
 }
 
 }  // namespace

@@ -22,20 +22,6 @@ constexpr double network_B_s = 1e9, network_delay_s = 5e-5;
 constexpr double liggghts_bytes = 700;  // of a sphere, over all ranks
 constexpr double least_gain = 1.25;     // of twice as many ranks
 
-const char* name_of(EngineKind engine) {
-  switch (engine) {
-    case EngineKind::native:
-      return "native";
-    case EngineKind::liggghts:
-      return "liggghts";
-    case EngineKind::none:
-      return "none";
-    case EngineKind::replay:
-      return "replay";
-  }
-  return "";
-}
-
 /// Bytes a surface that a rank sends or gets at one update.
 double exchanged_bytes_of(const RadiationSettings& settings, int ranks) {
   constexpr double heats = 16, wide_integer = 16, replicates = 4, integer = 8, pairs = 40;
@@ -101,13 +87,13 @@ std::string scaling_text(const Case& c, const Forecast& one, int ranks) {
     for (int r = 1;; r = std::min(2 * r, ranks)) {
       const RankForecast f = forecast_on_ranks(c, one, engine, r);
       text += fmt::format("  {:<9} {:>5} {:>9.3g} {:>9.3g} {:>10.3g} {:>9.3g} {:>9.3g} {:>9.3g} {:>9.0f}\n",
-                          name_of(engine), r, f.flow_s, f.gather_s, f.conduction_s, f.radiation_s, f.output_s,
-                          f.total_s(), f.memory_bytes / 1e6);
+                          engine_names.of(engine), r, f.flow_s, f.gather_s, f.conduction_s, f.radiation_s,
+                          f.output_s, f.total_s(), f.memory_bytes / 1e6);
       if (r >= ranks) break;
     }
   for (const EngineKind engine : engines)
-    text += fmt::format("  {}: twice as many ranks save less than a fifth from {} on\n", name_of(engine),
-                        where_it_stops_scaling(c, one, engine, most));
+    text += fmt::format("  {}: twice as many ranks save less than a fifth from {} on\n",
+                        engine_names.of(engine), where_it_stops_scaling(c, one, engine, most));
   if (!moves || engines.size() < 2) return text;
   int pays = 1;
   const double native_s = forecast_on_ranks(c, one, EngineKind::native, ranks).total_s();

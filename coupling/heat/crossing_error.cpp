@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "raytrace/balancing.h"
+#include "raytrace/conjugate_gradients.h"
 
 namespace granrad {
 
@@ -43,26 +44,10 @@ class ClosureShift {
     }
     return product;
   }
-  static double dot(const Values& a, const Values& b) {
-    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-  }
-  void solve(Values left) {
+  void solve(const Values& right) {
     constexpr int most_iterations = 300;
     constexpr double enough = 1e-6;  // an error is wanted, not a heat
-    c_.assign(left.size(), 0);
-    Values search = left;
-    double square = dot(left, left);
-    const double goal = enough * enough * square;
-    for (int step = 0; step < most_iterations && square > goal; ++step) {
-      const Values image = applied(search);
-      const double curvature = dot(search, image);
-      if (!(curvature > 0)) break;
-      const double length = square / curvature;
-      for (std::size_t i = 0; i < c_.size(); ++i) c_[i] += length * search[i], left[i] -= length * image[i];
-      const double now = dot(left, left);
-      for (std::size_t i = 0; i < c_.size(); ++i) search[i] = left[i] + now / square * search[i];
-      square = now;
-    }
+    c_ = conjugate_gradients(right, enough, most_iterations, [&](const Values& y) { return applied(y); });
     for (std::size_t i = 0; i < c_.size(); ++i)
       if (closes(x_, i)) c_[i] /= std::sqrt(x_.area_m2[i]);
   }

@@ -98,15 +98,20 @@ class System {
     }
   }
 
+  /// use(e, M_e) of each surface that reflects.
+  template <class Use>
+  void for_reflecting(Use use) const {
+    for (std::int32_t e = 0; e < m_.element_count(); ++e)
+      if (reflects_[e] != 0) use(e, ConstMap(mass(e), m_.size(e), m_.size(e)));
+  }
+
   /// M / rho x - K x on the surfaces that reflect, zero elsewhere.
   Vector apply(const Vector& x) const {
     Vector exchanged = Vector::Zero(x.size()), y = Vector::Zero(x.size());
     add_exchange(x, exchanged);
-    for (std::int32_t e = 0; e < m_.element_count(); ++e) {
-      if (reflects_[e] == 0) continue;
-      const ConstMap mass_matrix(mass(e), m_.size(e), m_.size(e));
+    for_reflecting([&](std::int32_t e, const ConstMap& mass_matrix) {
       y.segment(m_.first[e], m_.size(e)) = mass_matrix * part(x, e) / reflects_[e] - part(exchanged, e);
-    }
+    });
     return y;
   }
 
@@ -120,12 +125,10 @@ class System {
   Vector right_side(const Vector& known) const {
     Vector from_black = Vector::Zero(known.size()), rhs = Vector::Zero(known.size());
     add_exchange(known, from_black);
-    for (std::int32_t e = 0; e < m_.element_count(); ++e) {
-      if (reflects_[e] == 0) continue;
-      const ConstMap mass_matrix(mass(e), m_.size(e), m_.size(e));
+    for_reflecting([&](std::int32_t e, const ConstMap& mass_matrix) {
       rhs.segment(m_.first[e], m_.size(e)) =
           emits_[e] / reflects_[e] * power_[e] * mass_matrix.col(0) + part(from_black, e);
-    }
+    });
     return rhs;
   }
 

@@ -32,13 +32,6 @@ double default_rays(RadiationKind kind, int order) {
   return kind == RadiationKind::lines ? default_line_ends_per_particle : default_rays_per_particle;
 }
 
-RadiationKind kind_from(const std::string& name) {
-  for (auto kind : {RadiationKind::paths, RadiationKind::embree, RadiationKind::lines, RadiationKind::shading,
-                    RadiationKind::correlation})
-    if (name == to_string(kind)) return kind;
-  return RadiationKind::none;
-}
-
 std::optional<GasLens> read_gas(TomlTable table) {
   if (!table.present()) return {};
   GasLens gas;
@@ -187,14 +180,13 @@ void read_effort(TomlTable& table, RadiationSettings& settings) {
 }
 
 /// A source of radiative exchange: [radiation], or one that is compared.
-RadiationSettings read_source(TomlTable table, const Scene& scene, const std::string& fallback_source) {
+RadiationSettings read_source(TomlTable table, const Scene& scene, RadiationKind otherwise) {
   RadiationSettings settings;
-  const auto chosen = table.choice(
+  settings.kind = table.choice(
       {"source",
        "paths: traced in the loop, exact; embree, lines, shading: view factors and radiosity; correlation: view factors from a table",
        "paths; none without [radiation]"},
-      {"none", "paths", "embree", "lines", "shading", "correlation"}, fallback_source);
-  settings.kind = kind_from(chosen);
+      radiation_names, otherwise);
   const bool paths = settings.kind == RadiationKind::paths;
   settings.table = table.file({"table", "correlation table, for source = correlation"},
                               settings.kind == RadiationKind::correlation);
@@ -244,7 +236,8 @@ RadiationSettings read_source(TomlTable table, const Scene& scene, const std::st
 }
 
 RadiationSettings read_radiation(TomlTable table, const Scene& scene) {
-  RadiationSettings settings = read_source(table, scene, table.present() ? "paths" : "none");
+  RadiationSettings settings =
+      read_source(table, scene, table.present() ? RadiationKind::paths : RadiationKind::none);
   const Key every{"every_s",
                   "time between updates of the radiation; auto: by motion and the radiative time constant"};
   const NumberRule positive{.unit = "s", .min = 0, .min_exclusive = true};
@@ -269,9 +262,9 @@ ValidateSettings read_validate(TomlTable table, const Scene& scene) {
   if (auto reference =
           table.table({"reference", "The source the others are compared with; keys as in [radiation]"});
       reference.present())
-    validate.reference = read_source(reference, scene, "paths");
+    validate.reference = read_source(reference, scene, RadiationKind::paths);
   for (auto& compared : table.tables({"compare", "A source to compare; keys as in [radiation]"})) {
-    const RadiationSettings settings = read_source(compared, scene, "correlation");
+    const RadiationSettings settings = read_source(compared, scene, RadiationKind::correlation);
     std::vector<double> ladder = {settings.rays};
     if (compared.has("ladder")) {
       if (compared.has("rays"))
@@ -319,24 +312,6 @@ void check_heat_has_something_to_do(TomlDocument& document, const Scene& scene, 
 }
 
 }  // namespace
-
-const char* to_string(RadiationKind kind) {
-  switch (kind) {
-    case RadiationKind::none:
-      return "none";
-    case RadiationKind::paths:
-      return "paths";
-    case RadiationKind::embree:
-      return "embree";
-    case RadiationKind::lines:
-      return "lines";
-    case RadiationKind::shading:
-      return "shading";
-    case RadiationKind::correlation:
-      return "correlation";
-  }
-  return "none";
-}
 
 HeatScene read_heat_scene(TomlDocument& document, const Scene& scene) {
   auto root = document.root();

@@ -14,7 +14,16 @@
 namespace granrad {
 
 enum class RadiationKind { none, paths, embree, lines, shading, correlation };
-const char* to_string(RadiationKind kind);
+inline constexpr ChoiceNames<RadiationKind::correlation> radiation_names(
+    {{{RadiationKind::none, "none"},
+      {RadiationKind::paths, "paths"},
+      {RadiationKind::embree, "embree"},
+      {RadiationKind::lines, "lines"},
+      {RadiationKind::shading, "shading"},
+      {RadiationKind::correlation, "correlation"}}});
+inline const char* to_string(RadiationKind kind) {
+  return radiation_names.of(kind);
+}
 
 /// [radiation], and each source of [validate].
 struct RadiationSettings {

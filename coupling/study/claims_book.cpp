@@ -6,28 +6,37 @@
 #include <map>
 #include <set>
 
+#include "dem/base/files/markdown.h"
+
 namespace granrad {
 
 namespace {
 
-std::string md_cell(const std::string& text) {
-  std::string out;
-  for (const char c : text) out += c == '|' ? std::string("\\|") : std::string(1, c);
-  return out;
+std::string bias_table(const std::vector<Judgement>& judged) {
+  const auto percent = [](double x) { return std::isfinite(x) ? fmt::format("{:.2f} %", x) : std::string(); };
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& q : biases(judged))
+    rows.push_back({q.quantity, fmt::format("{}", q.count), fmt::format("{:+.2f} %", q.bias_pct),
+                    percent(q.sigma_pct),
+                    std::isfinite(q.reference_pct) ? percent(q.reference_pct) : "unknown"});
+  return "\n## Bias and scatter by quantity\n\nAs the FDS Validation Guide states them, from the logarithms of ours over the "
+         "reference: σ_M is the scatter of ours once that of the references, σ_E, is taken off; 0 means that the references "
+         "cannot tell. Where an uncertainty is unknown, σ_M holds it too.\n\n" +
+         markdown_table({"quantity", "numbers", "bias", "σ_M", "σ_E"}, rows);
 }
 
-std::string bias_table(const std::vector<Judgement>& judged) {
-  std::string text =
-      "\n## Bias and scatter by quantity\n\nAs the FDS Validation Guide states them, from the logarithms of ours over the "
-      "reference: σ_M is the scatter of ours once that of the references, σ_E, is taken off; 0 means that the references "
-      "cannot tell. Where an uncertainty is unknown, σ_M holds it too.\n\n"
-      "| quantity | numbers | bias | σ_M | σ_E |\n|---|---|---|---|---|\n";
-  const auto percent = [](double x) { return std::isfinite(x) ? fmt::format("{:.2f} %", x) : std::string(); };
-  for (const auto& q : biases(judged))
-    text += fmt::format("| {} | {} | {:+.2f} % | {} | {} |\n", md_cell(q.quantity), q.count, q.bias_pct,
-                        percent(q.sigma_pct),
-                        std::isfinite(q.reference_pct) ? percent(q.reference_pct) : "unknown");
-  return text;
+std::string judgements(const std::vector<Judgement>& judged) {
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& j : judged) {
+    const std::string verdict = j.verdict == "differs" ? "**differs**" : j.verdict;
+    rows.push_back(
+        {j.claim.id, j.claim.quantity, j.claim.text, j.claim.kind,
+         fmt::format("{} {}", with_error(j.ours), j.claim.unit),
+         std::isfinite(j.claim.reference) ? with_error({j.claim.reference, j.claim.uncertainty}) : "",
+         std::isfinite(j.difference_pct) ? fmt::format("{:+.2f} %", j.difference_pct) : "",
+         j.claim.tolerance_pct > 0 ? fmt::format("{} (≤ {:g} %)", verdict, j.claim.tolerance_pct) : verdict});
+  }
+  return markdown_table({"", "quantity", "case", "class", "ours", "reference", "bias", "verdict"}, rows);
 }
 
 std::string verdicts(const std::vector<Judgement>& judged) {
@@ -66,17 +75,7 @@ std::string claims_book(const StudyOutcome& outcome) {
       outcome.study.claims.filename().string(),
       whole ? "" : "**A part of the study**: numbers of cases that were not run say so. ");
   text += made_by(outcome) + verdicts(outcome.judged);
-  text +=
-      "| | quantity | case | class | ours | reference | bias | verdict |\n|---|---|---|---|---|---|---|---|\n";
-  for (const auto& j : outcome.judged)
-    text += fmt::format(
-        "| {} | {} | {} | {} | {} {} | {} | {} | {}{} |\n", j.claim.id, md_cell(j.claim.quantity),
-        md_cell(j.claim.text), j.claim.kind, with_error(j.ours), j.claim.unit,
-        std::isfinite(j.claim.reference) ? with_error({j.claim.reference, j.claim.uncertainty}) : "",
-        std::isfinite(j.difference_pct) ? fmt::format("{:+.2f} %", j.difference_pct) : "",
-        j.verdict == "differs" ? "**differs**" : j.verdict,
-        j.claim.tolerance_pct > 0 ? fmt::format(" (≤ {:g} %)", j.claim.tolerance_pct) : "");
-  text += bias_table(outcome.judged);
+  text += judgements(outcome.judged) + bias_table(outcome.judged);
   text += "\n## Notes, and the command that makes each number\n\n";
   for (const auto& j : outcome.judged) {
     text += fmt::format("- **{}** {} {}", j.claim.id, j.claim.place, j.claim.why);

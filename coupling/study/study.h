@@ -4,13 +4,23 @@
 #include <string>
 #include <vector>
 
+#include "dem/base/toml/choice_names.h"
+
 namespace granrad {
 
 class TomlDocument;
 
 /// What a case does. All but `command` are commands of our two programs.
 enum class StudyKind { run, validate, measure, trace, fit, command };
-const char* to_string(StudyKind kind);
+inline constexpr ChoiceNames<StudyKind::command> study_kinds({{{StudyKind::run, "run"},
+                                                               {StudyKind::validate, "validate"},
+                                                               {StudyKind::measure, "measure"},
+                                                               {StudyKind::trace, "trace"},
+                                                               {StudyKind::fit, "fit"},
+                                                               {StudyKind::command, "command"}}});
+inline const char* to_string(StudyKind kind) {
+  return study_kinds.of(kind);
+}
 
 /// One case: one folder below the study's.
 struct StudyCase {

@@ -15,8 +15,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::vector<std::string> kinds = {"run", "validate", "measure", "trace", "fit", "command"};
-
 std::string folder_name(const std::string& text) {
   std::string name;
   for (char c : text)
@@ -93,9 +91,9 @@ std::vector<Step> read_steps(TomlTable& table) {
   std::vector<Step> steps;
   for (const auto* list : {&vary.texts, &vary.values})
     for (const auto& value : *list) {
-      Step step{folder_name(name + "-" + value), {}, {}};
+      Step step{folder_name(fmt::format("{}-{}", name, value)), {}, {}};
       for (const auto& key : vary.keys) {
-        step.set.push_back(key + "=" + value);
+        step.set.push_back(fmt::format("{}={}", key, value));
         step.varied.emplace_back(key, value);
       }
       steps.push_back(step);
@@ -115,19 +113,15 @@ std::vector<Step> read_marked_steps(TomlTable& table) {
   return steps;
 }
 
-StudyKind kind_of(const std::string& name) {
-  return static_cast<StudyKind>(std::find(kinds.begin(), kinds.end(), name) - kinds.begin());
-}
-
 /// Keys that a group and a single case share; what the case lacks is the group's.
 StudyCase read_base(TomlTable& table, const StudyCase& outer) {
   StudyCase base = outer;
-  base.kind = kind_of(table.choice(
+  base.kind = table.choice(
       {"kind",
        "run, validate, measure (conductivity), trace (frames of runs), fit (traces); command: options are a "
        "program with its words, {folder} is the folder of the case",
        "of the group; run"},
-      kinds, to_string(outer.kind)));
+      study_kinds, outer.kind);
   if (const auto scene = table.file({"scene", "scene every case starts from", "of the group"}, false);
       table.has("scene"))
     base.scene = scene;
@@ -159,7 +153,7 @@ void add_case(std::vector<StudyCase>& cases, StudyCase one, const std::string& n
   for (const auto& seed : seeds) {
     StudyCase replicate = one;
     replicate.name = fmt::format("{}_seed-{}", one.point, folder_name(seed));
-    replicate.set.push_back(seed_key + "=" + seed);
+    replicate.set.push_back(fmt::format("{}={}", seed_key, seed));
     cases.push_back(replicate);
   }
 }
@@ -212,10 +206,6 @@ void check_names(const Study& study, TomlDocument& document) {
 }
 
 }  // namespace
-
-const char* to_string(StudyKind kind) {
-  return kinds[static_cast<std::size_t>(kind)].c_str();
-}
 
 std::vector<const StudyCase*> Study::of_point(const std::string& point) const {
   std::vector<const StudyCase*> found;

@@ -88,7 +88,7 @@ void add_history(HtmlReport& page, const StudyFigure& figure, const StudyOutcome
       const auto history = read_history(outcome.folder / row.of->name / "history.csv");
       for (const auto& name : figure.y)
         if (history.count(name) && history.count(figure.x))
-          chart.series.push_back({.label = figure.y.size() > 1 ? point + ", " + name : point,
+          chart.series.push_back({.label = figure.y.size() > 1 ? fmt::format("{}, {}", point, name) : point,
                                   .x = history.at(figure.x),
                                   .y = history.at(name),
                                   .error = {}});

@@ -91,7 +91,8 @@ Quantities of_validation(const fs::path& folder) {
 void flatten(const nlohmann::json& json, const std::string& name, Quantities& all) {
   if (json.is_number()) all[name] = {json.get<double>(), 0};
   if (json.is_object())
-    for (const auto& [key, value] : json.items()) flatten(value, name.empty() ? key : name + "." + key, all);
+    for (const auto& [key, value] : json.items())
+      flatten(value, name.empty() ? key : fmt::format("{}.{}", name, key), all);
 }
 
 Quantities of_json(const fs::path& file) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "dem/base/error.h"
+#include "dem/base/program.h"
 #include "dem/base/suggestion.h"
 
 namespace granrad {
@@ -149,6 +150,10 @@ std::string cause(const Asked& asked, const CLI::ParseError& error) {
 }  // namespace
 
 void set_manners(CLI::App& app) {
+  app.set_version_flag("--version",
+                       fmt::format("{} {} ({})", app.get_name(), program_version(), program_git_sha()));
+  app.set_help_all_flag("--help-all", "help of every subcommand");
+  app.require_subcommand(1);
   app.formatter(std::make_shared<NarrowHelp>());
   app.get_formatter()->column_width(column_of_meaning);
 }
@@ -158,6 +163,15 @@ int usage_exit(const CLI::App& app, const CLI::ParseError& error, int argc, char
   const Asked asked = read_words(app, argc, argv);
   fmt::print(stderr, "{}\nSee {} --help.\n", wrapped(cause(asked, error)), asked.path);
   return exit_bad_input;
+}
+
+int run_command(CLI::App& app, int argc, char** argv, const std::function<int(const std::string&)>& body) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return usage_exit(app, error, argc, argv);
+  }
+  return body(app.get_subcommands().front()->get_name());
 }
 
 }  // namespace granrad

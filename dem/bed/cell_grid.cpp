@@ -1,16 +1,35 @@
 #include "dem/bed/cell_grid.h"
 
 #include <cmath>
+#include <numeric>
 
 namespace granrad {
 
 namespace {
+
 constexpr double most_cells = 1 << 20;  ///< along one direction
 constexpr std::uint64_t buckets_per_point = 16;
 /// Cells are larger than asked by this part, so that round-off of cell coordinates (most_cells * 2^-52) never
 /// puts two points within `cell_m` two cells apart.
 constexpr double cell_margin = 1 + 1e-9;
+
+std::vector<std::int32_t> all_of(const std::vector<Vec3>& points) {
+  std::vector<std::int32_t> all(points.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
 }  // namespace
+
+CellGrid::CellGrid(const std::vector<Vec3>& points, double cell_m, const Box& box)
+    : CellGrid(points, all_of(points), cell_m, box, {}) {}
+
+std::vector<std::int32_t> CellGrid::around(const Vec3& p) const {
+  std::vector<std::int32_t> found;
+  visit_around(p, [&](std::int32_t member, const Vec3&) { found.push_back(member); });
+  std::sort(found.begin(), found.end());
+  return found;
+}
 
 CellGrid::CellGrid(const std::vector<Vec3>& points, std::vector<std::int32_t> members, double cell_m,
                    const Box& box, const std::array<bool, 3>& periodic)

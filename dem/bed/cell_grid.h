@@ -16,6 +16,8 @@ class CellGrid {
   /// Keeps a copy of the points listed by `members` (indices into `points`).
   CellGrid(const std::vector<Vec3>& points, std::vector<std::int32_t> members, double cell_m, const Box& box,
            const std::array<bool, 3>& periodic);
+  /// Of all points, in a box without periods.
+  CellGrid(const std::vector<Vec3>& points, double cell_m, const Box& box);
 
   /// The members in the order of their cells.
   const std::vector<std::int32_t>& members() const { return member_; }
@@ -24,6 +26,8 @@ class CellGrid {
   /// points within cell_m of p (in the nearest periodic image) are among them.
   template <class Visit>
   void visit_around(const Vec3& p, Visit&& visit) const;
+  /// The members that visit_around visits, ascending.
+  std::vector<std::int32_t> around(const Vec3& p) const;
   /// Calls visit(member, point) for every point that may lie in the box; no wrapping.
   template <class Visit>
   void visit_box(const Box& range, Visit&& visit) const;

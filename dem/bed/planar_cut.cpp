@@ -112,7 +112,7 @@ Polygon part_above(const Polygon& polygon, const Vec3& normal, double offset) {
     const Vec3 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
     const double ha = dot(normal, a) - offset, hb = dot(normal, b) - offset;
     if (ha >= 0) kept.push_back(a);
-    if ((ha < 0) != (hb < 0)) kept.push_back(a + (b - a) * (ha / (ha - hb)));
+    if ((ha < 0 && hb > 0) || (ha > 0 && hb < 0)) kept.push_back(a + (b - a) * (ha / (ha - hb)));
   }
   return kept;
 }

@@ -4,20 +4,6 @@
 
 namespace granrad {
 
-const char* to_string(WallRole role) {
-  switch (role) {
-    case WallRole::isothermal:
-      return "isothermal";
-    case WallRole::adiabatic:
-      return "adiabatic";
-    case WallRole::open:
-      return "open";
-    case WallRole::excluded:
-      return "excluded";
-  }
-  return "?";
-}
-
 double next_opening_s(const std::vector<Wall>& walls, double time_s) {
   double next = infinity;
   for (const auto& w : walls)

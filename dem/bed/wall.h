@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "dem/base/toml/choice_names.h"
 #include "dem/base/vec3.h"
 #include "dem/bed/box.h"
 
@@ -17,7 +18,13 @@ enum class WallRole {
   excluded,    ///< blocks rays, but is dropped before closure (the paper's four unheated walls)
 };
 
-const char* to_string(WallRole role);
+inline constexpr ChoiceNames<WallRole::excluded> wall_roles({{{WallRole::isothermal, "isothermal"},
+                                                              {WallRole::adiabatic, "adiabatic"},
+                                                              {WallRole::open, "open"},
+                                                              {WallRole::excluded, "excluded"}}});
+inline const char* to_string(WallRole role) {
+  return wall_roles.of(role);
+}
 
 /// A wall: where it is, its thermal condition and its contact. Its shape is a set of convex planar faces; the
 /// right-hand normal of a face points to the side where the particles are, and that side radiates. Contact

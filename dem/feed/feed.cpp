@@ -101,31 +101,15 @@ const FeedTotals& Feed::totals() const {
   return impl_->totals;
 }
 
-namespace {
-
-constexpr auto visit_totals = [](auto& t, auto integer, auto real) {
-  real("mass_in_kg", t.mass_in_kg);
-  real("mass_out_kg", t.mass_out_kg);
-  real("heat_in_J", t.heat_in_J);
-  real("heat_out_J", t.heat_out_J);
-  real("heat_capacity_out_J_K", t.heat_capacity_out_J_K);
-  integer("inserted", t.inserted);
-  integer("removed", t.removed);
-  integer("nudged", t.nudged);
-  integer("waiting", t.waiting);
-};
-
-}  // namespace
-
 StateBlock Feed::save() const {
   StateBlock state;
-  save_values(std::as_const(impl_->totals), state, visit_totals);
+  save_values(std::as_const(impl_->totals), state, FeedTotals::visit);
   std::visit([&](const auto& feed) { feed.save(state); }, impl_->feed);
   return state;
 }
 
 void Feed::load(const StateBlock& state) {
-  restore_values(impl_->totals, state, visit_totals);
+  restore_values(impl_->totals, state, FeedTotals::visit);
   std::visit([&](auto& feed) { feed.load(state); }, impl_->feed);
 }
 

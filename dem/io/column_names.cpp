@@ -15,47 +15,42 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// Names as the programs of this field write them; the first found holds.
-const std::vector<std::pair<Quantity, Words>>& exact_names() {
+/// What a single column is called: as the programs of this field write it, the first found holds; and plain forms (see
+/// `plain`).
+struct NamesOf {
+  Quantity quantity;
+  Words exact, plain{};
+};
+
+const std::vector<NamesOf>& names_of_columns() {
   using enum Quantity;
-  static const std::vector<std::pair<Quantity, Words>> all{
-      {id, {"id"}},
+  static const std::vector<NamesOf> all{
+      {id, {"id"}, {"id", "particleid", "globalid", "globalids", "gid", "atomid"}},
       {x, {"x", "xu"}},
       {y, {"y", "yu"}},
       {z, {"z", "zu"}},
-      {radius, {"radius"}},
-      {diameter, {"diameter"}},
-      {temperature, {"temperature", "T", "Temp", "f_Temp[0]", "f_Temp", "f_T", "c_T", "v_T", "d_T"}},
+      {radius, {"radius"}, {"radius", "r", "radii"}},
+      {diameter, {"diameter"}, {"diameter", "d", "dp", "diam"}},
+      {temperature,
+       {"temperature", "T", "Temp", "f_Temp[0]", "f_Temp", "f_T", "c_T", "v_T", "d_T"},
+       {"temperature", "temp", "t"}},
       {vx, {"vx"}},
       {vy, {"vy"}},
       {vz, {"vz"}},
       {omegax, {"omegax"}},
       {omegay, {"omegay"}},
       {omegaz, {"omegaz"}},
-      {material, {"material"}},
-      {type, {"type"}},
-      {q_rad, {"q_rad"}},
-      {q_ss, {"q_ss"}},
-      {q_sfs, {"q_sfs"}},
+      {material, {"material"}, {"material", "materialid"}},
+      {type, {"type"}, {"type", "atomtype", "materialtype", "particletype"}},
+      {q_rad, {"q_rad"}, {"qrad"}},
+      {q_ss, {"q_ss"}, {"qss"}},
+      {q_sfs, {"q_sfs"}, {"qsfs"}},
   };
   return all;
 }
 
-/// Plain forms (see `plain`) of single columns.
-const std::vector<std::pair<Quantity, Words>>& plain_names() {
-  using enum Quantity;
-  static const std::vector<std::pair<Quantity, Words>> all{
-      {id, {"id", "particleid", "globalid", "globalids", "gid", "atomid"}},
-      {radius, {"radius", "r", "radii"}},
-      {diameter, {"diameter", "d", "dp", "diam"}},
-      {temperature, {"temperature", "temp", "t"}},
-      {material, {"material", "materialid"}},
-      {type, {"type", "atomtype", "materialtype", "particletype"}},
-      {q_rad, {"qrad"}},
-      {q_ss, {"qss"}},
-      {q_sfs, {"qsfs"}},
-  };
-  return all;
+const std::string& usual_name(Quantity quantity) {
+  return names_of_columns()[static_cast<std::size_t>(quantity)].exact.front();
 }
 
 /// Plain forms of vectors; their components follow as x y z or 0 1 2.
@@ -120,8 +115,8 @@ bool short_for_temperature(const std::string& text) {
 }
 
 std::optional<Quantity> quantity_of(const std::string& text) {
-  for (const auto& [quantity, words] : plain_names())
-    if (std::find(words.begin(), words.end(), text) != words.end()) return quantity;
+  for (const auto& of : names_of_columns())
+    if (std::find(of.plain.begin(), of.plain.end(), text) != of.plain.end()) return of.quantity;
   if (text.empty()) return {};
   const auto component = std::string_view("x0y1z2").find(text.back());
   if (component == std::string_view::npos) return {};
@@ -148,13 +143,13 @@ bool ColumnNames::taken(std::size_t column) const {
 }
 
 void ColumnNames::take_exact() {
-  for (const auto& [quantity, words] : exact_names())
-    for (const std::string& word : words) {
+  for (const auto& of : names_of_columns())
+    for (const std::string& word : of.exact) {
       const auto found = std::find(names_.begin(), names_.end(), word);
       if (found == names_.end()) continue;
       if (std::find(found + 1, names_.end(), word) != names_.end())
         problems_.push_back(fmt::format("column {} is given twice", word));
-      at_[static_cast<std::size_t>(quantity)] = static_cast<int>(found - names_.begin());
+      at_[static_cast<std::size_t>(of.quantity)] = static_cast<int>(found - names_.begin());
       break;
     }
 }
@@ -169,7 +164,7 @@ void ColumnNames::take_alike() {
     if (at >= 0)
       problems_.push_back(
           advised(fmt::format("columns {} and {} could both be the {}", names_[static_cast<std::size_t>(at)],
-                              names_[c], exact_names()[static_cast<std::size_t>(*quantity)].second[0]),
+                              names_[c], usual_name(*quantity)),
                   "rename one of them"));
     else
       at = static_cast<int>(c);
@@ -191,9 +186,9 @@ void ColumnNames::refuse_near_misses() {
     const Quantity quantity = meaning(meant);
     const bool size = quantity == Quantity::radius || quantity == Quantity::diameter;
     if (has(quantity) || (size && sized) || (quantity == Quantity::material && has(Quantity::type))) continue;
-    const std::string name = exact_names()[static_cast<std::size_t>(quantity)].second[0];
-    problems_.push_back(advised(fmt::format("column {} is not known; did you mean {}?", names_[c], name),
-                                "rename it (numbers in SI units), or take it out"));
+    problems_.push_back(
+        advised(fmt::format("column {} is not known; did you mean {}?", names_[c], usual_name(quantity)),
+                "rename it (numbers in SI units), or take it out"));
   }
 }
 

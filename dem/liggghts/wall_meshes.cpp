@@ -1,26 +1,25 @@
 #include "dem/liggghts/wall_meshes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "dem/base/constants.h"
+#include "dem/bed/planar_cut.h"
 #include "dem/bed/wall_shape.h"
 
 namespace granrad::liggghts {
 
 namespace {
 
-/// The part of a convex polygon where sign x coordinate <= sign x limit.
+/// The part of a convex polygon where sign x coordinate <= sign x limit; what is cut ends on the limit.
 std::vector<Vec3> cut(const std::vector<Vec3>& polygon, int axis, double limit, double sign) {
-  std::vector<Vec3> kept;
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Vec3 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
-    const double beyond_a = sign * (a[axis] - limit), beyond_b = sign * (b[axis] - limit);
-    if (beyond_a <= 0) kept.push_back(a);
-    if (beyond_a * beyond_b >= 0) continue;
-    kept.push_back(a + (b - a) * (beyond_a / (beyond_a - beyond_b)));
-    kept.back()[axis] = limit;
-  }
+  constexpr double rounding = 1e-12;  // of the coordinates
+  Vec3 inward{};
+  inward[axis] = -sign;
+  auto kept = part_above(polygon, inward, -sign * limit);
+  for (auto& v : kept)
+    if (std::abs(v[axis] - limit) <= rounding * (std::abs(limit) + norm(v))) v[axis] = limit;
   return kept;
 }
 

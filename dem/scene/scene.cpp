@@ -83,13 +83,8 @@ void read_particles(TomlTable table, Scene& scene) {
 }
 
 void read_dem(TomlTable table, Scene& scene) {
-  const std::string engine =
-      table.choice({"engine", "native, LIGGGHTS, a frozen bed, or a flow that was recorded"},
-                   {"native", "liggghts", "none", "replay"}, "native");
-  scene.engine = engine == "none"       ? EngineKind::none
-                 : engine == "replay"   ? EngineKind::replay
-                 : engine == "liggghts" ? EngineKind::liggghts
-                                        : EngineKind::native;
+  scene.engine = table.choice({"engine", "native, LIGGGHTS, a frozen bed, or a flow that was recorded"},
+                              engine_names, EngineKind::native);
   const std::string precision =
       table.choice({"precision", "of the contact law between particles; sums and positions stay double"},
                    {"double", "mixed"}, "double");

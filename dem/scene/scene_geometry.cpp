@@ -77,18 +77,16 @@ class GeometryReader {
 
   /// `inherits`: what the table does not say stays as it is.
   void read_properties(TomlTable& table, Wall& wall, bool inherits = false) {
-    const std::vector<std::string> roles{"isothermal", "adiabatic", "open", "excluded"};
     if (roles_required_ && !inherits && !table.has("role"))
       table.problem("role",
                     "missing: radiation is on, so every wall must choose \"isothermal\", \"adiabatic\", "
                     "\"open\" or \"excluded\"");
     const WallRole before = wall.role;
-    const std::string role = table.choice(
+    wall.role = table.choice(
         {"role",
          "isothermal: held at temperature_K; adiabatic: re-radiates what it receives; open: black surroundings; excluded: left out of the exchange",
          "required when radiation is on, else adiabatic"},
-        roles, inherits ? to_string(before) : "adiabatic");
-    wall.role = static_cast<WallRole>(std::find(roles.begin(), roles.end(), role) - roles.begin());
+        wall_roles, inherits ? before : WallRole::adiabatic);
     read_temperature(table, wall, inherits && has_temperature(before));
     if (wall.role == WallRole::open) {
       wall.emissivity = 1;

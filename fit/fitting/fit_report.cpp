@@ -74,6 +74,13 @@ void statistics_table(HtmlReport& report, const std::vector<RowFit>& rows, bool 
 
 constexpr double smallest_on_log_axis = 1e-7;  ///< below, a view factor is nothing
 
+Series series_of(const RowFit& row, const char* what, int colour) {
+  Series series;
+  series.label = fmt::format("{}, {:.3f}", what, row.row.solid_fraction);
+  series.colour = colour;
+  return series;
+}
+
 /// Traced means with the curve through them, one colour a solid fraction.
 Chart curves(const std::vector<RowFit>& rows, bool walls, bool logarithmic) {
   Chart chart{.title = fmt::format("{}{}", walls ? "Particle to wall" : "Particle to particle",
@@ -86,12 +93,8 @@ Chart curves(const std::vector<RowFit>& rows, bool walls, bool logarithmic) {
   int colour = 0;
   for (const auto& row : rows) {
     const auto& fit = walls ? row.pw : row.pp;
-    Series traced{.label = fmt::format("traced, {:.3f}", row.row.solid_fraction),
-                  .x = {},
-                  .y = {},
-                  .error = {},
-                  .points = true,
-                  .colour = colour++};
+    Series traced = series_of(row, "traced", colour++);
+    traced.points = true;
     for (const auto& bin : fit.bins) {
       if (logarithmic && bin.mean < smallest_on_log_axis) continue;
       traced.x.push_back(bin.distance);
@@ -103,11 +106,7 @@ Chart curves(const std::vector<RowFit>& rows, bool walls, bool logarithmic) {
   colour = 0;
   for (const auto& row : rows) {
     const auto& fit = walls ? row.pw : row.pp;
-    Series line{.label = fmt::format("fit, {:.3f}", row.row.solid_fraction),
-                .x = {},
-                .y = {},
-                .error = {},
-                .colour = colour++};
+    Series line = series_of(row, "fit", colour++);
     for (const auto& bin : fit.bins) {
       if (logarithmic && bin.fitted < smallest_on_log_axis) continue;
       line.x.push_back(bin.distance);

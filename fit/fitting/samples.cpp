@@ -72,22 +72,14 @@ DistanceSamples pair_samples(const Enclosure& enclosure, const HitCounts& counts
   const std::size_t n = enclosure.sphere_count();
   const double diameter_m =
       2 * std::accumulate(enclosure.radius_m.begin(), enclosure.radius_m.end(), 0.0) / static_cast<double>(n);
-  std::vector<std::int32_t> all(n);
-  std::iota(all.begin(), all.end(), 0);
-  const CellGrid grid(enclosure.centre_m, all, cutoff * diameter_m, enclosure.box, {});
+  const CellGrid grid(enclosure.centre_m, cutoff * diameter_m, enclosure.box);
   std::vector<DistanceSamples> rows(n);
-#pragma omp parallel
-  {
-    std::vector<std::pair<std::int32_t, double>> found;
-#pragma omp for schedule(dynamic, 32)
-    for (std::size_t i = 0; i < n; ++i) {
-      found.clear();
-      grid.visit_around(enclosure.centre_m[i], [&](std::int32_t j, const Vec3& p) {
-        const double d_star = norm(p - enclosure.centre_m[i]) / diameter_m;
-        if (static_cast<std::size_t>(j) > i && d_star < cutoff) found.emplace_back(j, d_star);
-      });
-      std::sort(found.begin(), found.end());
-      for (const auto& [j, d_star] : found)
+#pragma omp parallel for schedule(dynamic, 32)
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 centre = enclosure.centre_m[i];
+    for (const std::int32_t j : grid.around(centre)) {
+      const double d_star = norm(enclosure.centre_m[j] - centre) / diameter_m;
+      if (static_cast<std::size_t>(j) > i && d_star < cutoff)
         add_sample(counts, i, static_cast<std::size_t>(j), d_star, unobstructed_pair(d_star), rows[i]);
     }
   }

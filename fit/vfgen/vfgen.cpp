@@ -125,10 +125,7 @@ void add_keys(CLI::App& app, Body& body) {
 
 int run(int argc, char** argv) {
   CLI::App app("View factors of particle beds by ray tracing, and correlations fitted to them.", "vfgen");
-  app.set_version_flag("--version", fmt::format("vfgen {} ({})", program_version(), program_git_sha()));
-  app.require_subcommand(1);
   set_manners(app);
-  app.set_help_all_flag("--help-all", "help of every subcommand");
   app.fallthrough();
   bool quiet = false, verbose = false;
   auto* q = app.add_flag("-q,--quiet", quiet, "only results and errors");
@@ -145,17 +142,13 @@ int run(int argc, char** argv) {
   add_curve(app, body);
   add_measure(app, body);
   join_ranks();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return usage_exit(app, error, argc, argv);
-  }
-  if (const auto name = app.get_subcommands().front()->get_name(); name != "trace")
-    refuse_several_ranks("vfgen " + name);
-  install_signal_handlers();
-  const int code = body(quiet ? Verbosity::quiet : verbose ? Verbosity::verbose : Verbosity::normal);
-  if (verbose) fmt::print(stderr, "vfgen: {}\n", resources_used());
-  return code;
+  return run_command(app, argc, argv, [&](const std::string& command) {
+    if (command != "trace") refuse_several_ranks("vfgen " + command);
+    install_signal_handlers();
+    const int code = body(quiet ? Verbosity::quiet : verbose ? Verbosity::verbose : Verbosity::normal);
+    if (verbose) fmt::print(stderr, "vfgen: {}\n", resources_used());
+    return code;
+  });
 }
 
 }  // namespace

@@ -178,8 +178,7 @@ void refuse_unsound(const SparsePattern& pattern, std::size_t surfaces, const ch
 }
 
 std::int32_t role_number(const std::string& text) {
-  for (const auto role : {WallRole::isothermal, WallRole::adiabatic, WallRole::open, WallRole::excluded})
-    if (text == to_string(role)) return static_cast<std::int32_t>(role);
+  if (const auto role = wall_roles.value(text)) return static_cast<std::int32_t>(*role);
   throw IoError(advised(fmt::format("wall_role = '{}' (not a role)", text), "trace the snapshot again"));
 }
 

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "dem/base/files/markdown.h"
+
 namespace granrad {
 
 namespace {
@@ -22,15 +24,6 @@ std::string unit_of(const KeyUse& use) {
 
 std::string header_of(const KnownTable& table) {
   return table.list ? fmt::format("[[{}]]", table.name) : fmt::format("[{}]", table.name);
-}
-
-std::string for_cell(const std::string& text) {
-  std::string cell;
-  for (const char c : text) {
-    if (c == '|') cell += '\\';
-    cell += c;
-  }
-  return cell;
 }
 
 /// "  # " and the text, broken into lines of about 90 columns.
@@ -186,17 +179,16 @@ std::string reference_markdown(const std::vector<KnownTable>& tables) {
     if (!table.name.empty()) text += fmt::format("## `{}`\n\n", header_of(table));
     if (!table.meaning.empty()) text += fmt::format("{}.\n\n", table.meaning);
     if (table.keys.empty()) continue;
-    text += "| key | values | unit | default | meaning |\n|---|---|---|---|---|\n";
+    std::vector<std::vector<std::string>> rows;
     for (const auto& key : table.keys) {
       std::string meaning = key.use.meaning;
       if (!key.when.empty()) meaning += fmt::format("{}*with* `{}`", meaning.empty() ? "" : "; ", key.when);
       const std::string fallback = default_text(key);
       const bool code = key.use.otherwise.empty() && key.use.fallback && fallback == *key.use.fallback;
-      text +=
-          fmt::format("| `{}` | {} | {} | {} | {} |\n", key.use.name, for_cell(values_text(key.use)),
-                      unit_of(key.use), code ? fmt::format("`{}`", fallback) : fallback, for_cell(meaning));
+      rows.push_back({fmt::format("`{}`", key.use.name), values_text(key.use), unit_of(key.use),
+                      code ? fmt::format("`{}`", fallback) : fallback, meaning});
     }
-    text += "\n";
+    text += markdown_table({"key", "values", "unit", "default", "meaning"}, rows) + "\n";
   }
   while (text.ends_with("\n\n")) text.pop_back();
   return text;

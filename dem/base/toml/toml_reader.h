@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dem/base/number_rule.h"
+#include "dem/base/toml/choice_names.h"
 #include "dem/base/toml/key.h"
 #include "dem/base/vec3.h"
 
@@ -91,6 +92,12 @@ class TomlTable {
   /// One of `allowed`; anything else is a problem that lists them and suggests the closest.
   std::string choice(const Key& key, const std::vector<std::string>& allowed,
                      std::optional<std::string> fallback = {});
+  template <auto last>
+  decltype(last) choice(const Key& key, const ChoiceNames<last>& names,
+                        std::optional<decltype(last)> fallback = {}) {
+    const auto word = fallback ? std::optional<std::string>(names.of(*fallback)) : std::nullopt;
+    return *names.value(choice(key, names.all(), word));
+  }
   /// An existing file: beside the document, else among the installed data (data_folder.h); made absolute.
   std::filesystem::path file(const Key& key, bool required);
   /// Names of files, with * and ?, made absolute from the folder of the document; empty when absent.

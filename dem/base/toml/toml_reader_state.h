@@ -84,6 +84,16 @@ struct TomlTable::Node {
   std::optional<Vec3> checked_vec3(const toml::node& node, const std::string& at, const NumberRule& rule);
   /// The array at `key`, with at least min_count entries; null (and a problem) otherwise.
   const toml::array* list(std::string_view key, std::size_t min_count, const std::string& of);
+  /// What `read(entry, its path)` makes of the entries of the list at `key`, but those it makes nothing of.
+  template <class Value, class Read>
+  std::vector<Value> entries(std::string_view key, std::size_t min_count, const std::string& of, Read read) {
+    std::vector<Value> all;
+    const toml::array* array = list(key, min_count, of);
+    for (std::size_t k = 0; array && k < array->size(); ++k)
+      if (std::optional<Value> value = read((*array)[k], path_of(key) + "[" + std::to_string(k) + "]"))
+        all.push_back(std::move(*value));
+    return all;
+  }
 };
 
 }  // namespace granrad
