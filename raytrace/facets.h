@@ -76,11 +76,15 @@ class ConvexCell {
   /// `facets` are those the cell was made from.
   FacetHit exit(const Facets& facets, const Vec3& origin, const Vec3& direction) const;
 
- private:
   struct Plane {
-    Vec3 normal;
+    Vec3 normal;  ///< inward
     double offset;
   };
+  const std::vector<Plane>& planes() const { return planes_; }
+  /// The facets of a plane.
+  const std::vector<std::int32_t>& facets_of(std::size_t plane) const { return faces_[plane]; }
+
+ private:
   std::vector<Plane> planes_;
   std::vector<std::vector<std::int32_t>> faces_;  ///< facets of each plane
 };

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "dem/base/error.h"
-#include "fit/correlation/unobstructed_pair.h"
+#include "raytrace/unobstructed_pair.h"
 
 namespace granrad {
 

@@ -10,7 +10,7 @@
 #include "dem/bed/wall_shape.h"
 #include "dem/packing/packing.h"
 #include "fit/correlation/correlation_source.h"
-#include "fit/correlation/unobstructed_pair.h"
+#include "raytrace/unobstructed_pair.h"
 #include "raytrace/exact.h"
 
 namespace granrad {

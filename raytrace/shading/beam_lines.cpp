@@ -64,8 +64,9 @@ BeamLines::BeamLines() {
   for (int bin = 0; bin < near_bins + far_bins; ++bin) {
     const double s = distance_of(bin);
     const AngleTable angles(s);
-    Set& set = sets_.emplace_back();
-    for (std::size_t k = 0; k < count; ++k) {
+    Set& set = sets_.emplace_back(count_at(s));
+    const auto count = static_cast<double>(set.count());
+    for (std::size_t k = 0; k < set.count(); ++k) {
       double u[4];
       for (int d = 0; d < 4; ++d) u[d] = std::fmod(0.5 / count + static_cast<double>(k) * step[d], 1.0);
       const double theta = angles.angle((static_cast<double>(k) + 0.5) / count), turn = 2 * pi * u[1];
@@ -86,6 +87,19 @@ BeamLines::BeamLines() {
   }
 }
 
+/// A pair's factor falls as 1 / s^2, and with it what the evenness of its lines matters.
+std::size_t BeamLines::count_at(double distance) {
+  return distance < 2 ? most : distance < 3 ? 512 : distance < 5 ? 256 : distance < 8 ? 128 : 64;
+}
+
+BeamLines::Set::Set(std::size_t count)
+    : point_x(count),
+      point_y(count),
+      point_z(count),
+      direction_x(count),
+      direction_y(count),
+      direction_z(count) {}
+
 /// The middle of a bin.
 double BeamLines::distance_of(int bin) {
   if (bin < near_bins) return 1 + (bin + 0.5) / bins_per_diameter;
@@ -102,12 +116,16 @@ const BeamLines::Set& BeamLines::at(double distance) const {
 __attribute__((target_clones("avx512f", "avx2", "default")))
 #endif
 void BlockedLines::add(const BeamLines::Set& lines, float distance, float x, float y, float z, float radius2) {
+  const std::size_t count = lines.count();
+  const float *px = lines.point_x.data(), *py = lines.point_y.data(), *pz = lines.point_z.data(),
+              *dir_x = lines.direction_x.data(), *dir_y = lines.direction_y.data(),
+              *dir_z = lines.direction_z.data();
   std::int32_t sum = 0;
-  for (std::size_t k = 0; k < BeamLines::count; ++k) {
-    const float along = x * lines.direction_x[k] + y * lines.direction_y[k] + z * lines.direction_z[k];
-    const float dx = x - lines.point_x[k], dy = y - lines.point_y[k], dz = z - lines.point_z[k];
+  for (std::size_t k = 0; k < count; ++k) {
+    const float along = x * dir_x[k] + y * dir_y[k] + z * dir_z[k];
+    const float dx = x - px[k], dy = y - py[k], dz = z - pz[k];
     const float across2 = dx * dx + dy * dy + dz * dz - along * along;
-    const bool hit = (across2 < radius2) & (along > 0) & (along < distance * lines.direction_z[k]);
+    const bool hit = (across2 < radius2) & (along > 0) & (along < distance * dir_z[k]);
     blocked_[k] |= static_cast<std::int32_t>(hit);
     sum += blocked_[k];
   }

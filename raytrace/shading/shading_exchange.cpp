@@ -9,15 +9,19 @@
 
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
-#include "raytrace/exact.h"
 #include "raytrace/rays/patch_rays.h"
 #include "raytrace/rays/ray_rows.h"
-#include "raytrace/shading/beam_lines.h"
+#include "raytrace/shading/empty_room.h"
 #include "raytrace/shading/sphere_shading.h"
+#include "raytrace/unobstructed_pair.h"
 
 namespace granrad {
 
 namespace {
+
+double square(double x) {
+  return x * x;
+}
 
 /// Counts of rays that the walls send.
 HitCounts trace_walls(const PatchRays& from, const ShadingOptions& options) {
@@ -82,20 +86,120 @@ class Assembly {
   std::vector<double> area_;
 };
 
-/// Wall rows, each pair of walls from both ends. Returns whether any ray left the walls.
-bool add_walls(const Enclosure& enclosure, const HitCounts& counts, Assembly& assembly) {
-  const ExchangeAreas one_way = one_way_estimate(counts);
-  const std::size_t spheres = enclosure.sphere_count(), open = enclosure.open_surface();
-  bool anything_open = open == spheres;
-  for (std::size_t w = spheres; w < open; ++w)
-    for (auto k = one_way.pattern.row_begin[w]; k < one_way.pattern.row_begin[w + 1]; ++k) {
-      const auto j = static_cast<std::size_t>(one_way.pattern.column[k]);
-      const double part = j >= spheres && j != w && j < open ? 0.5 : 1;
-      assembly.add(w, j, part * one_way.value[k], part * part * one_way.variance[k]);
-      anything_open = anything_open || j == open;
-    }
-  return anything_open;
+/// What spheres and whole walls exchange, [sphere][wall], as known without any ray: what the empty room would give less
+/// what the sphere sees of others. Its error is that of many pairs, that of rays falls with their number.
+struct SphereWalls {
+  std::vector<double> value, variance;
+};
+
+SphereWalls spheres_to_walls(const Enclosure& enclosure, const EmptyRoom& room, const SphereShading& shading,
+                             const ShadingOptions& options) {
+  auto [factor, variance] = room.factors(enclosure, options.seed, options.threads);
+  for (std::size_t k = 0; k < factor.size(); ++k) {
+    const double r = enclosure.radius_m[k / room.walls()], area = 4 * pi * r * r;
+    variance[k] =
+        area * area * (variance[k] + shading.hidden_variance[k] + square(shading.beyond * factor[k]));
+    factor[k] = area * (factor[k] - shading.hidden[k]);
+  }
+  return {std::move(factor), std::move(variance)};
 }
+
+/// The X >= 0 of which rays, each worth `ray`, gave `counted` (Poisson), and another estimate `known` (normal): the maximum
+/// of counted / ray ln X - X / ray - (X - known)^2 / (2 variance). Inverse variances where there are many rays; where none
+/// came, as far as known is beyond its noise.
+double most_likely(double counted, double ray, double known, double variance) {
+  const double middle = 0.5 * (known - variance / ray);
+  return middle + std::sqrt(square(middle) + counted * variance / ray);
+}
+
+/// Wall rows by rays, each pair of walls from both ends.
+class WallRows {
+ public:
+  WallRows(const Enclosure& whole, const Enclosure& surfaces, const WallPatches* patches,
+           const HitCounts& counts)
+      : spheres_(whole.sphere_count()),
+        walls_(whole.walls.size()),
+        open_(surfaces.open_surface()),
+        centre_m_(whole.centre_m),
+        patches_(patches),
+        rays_(one_way_estimate(counts)),
+        one_ray_(walls_, 0) {
+    for (std::size_t s = spheres_; s < open_; ++s)
+      one_ray_[wall_of(s)] =
+          std::max(one_ray_[wall_of(s)], counts.area_m2[s] / static_cast<double>(counts.launched[s]));
+  }
+
+  /// Adds them, what a sphere and a whole wall exchange merged with what is known without rays; how it
+  /// lies on the patches is told by the rays. Returns whether any ray left the walls.
+  bool add(const SphereWalls& known, Assembly& assembly) const {
+    const Factors by = merge(known, assembly);
+    bool anything_open = open_ == spheres_;
+    visit([&](std::size_t w, std::size_t j, std::int64_t k) {
+      const double part = j >= spheres_ && j != w && j < open_ ? 0.5 : 1;
+      const std::size_t pair = j * walls_ + wall_of(w);
+      assembly.add(w, j, (j < spheres_ ? by.value[pair] : part) * rays_.value[k],
+                   (j < spheres_ ? by.variance[pair] : part * part) * rays_.variance[k]);
+      anything_open = anything_open || j == open_;
+    });
+    return anything_open;
+  }
+
+ private:
+  std::size_t wall_of(std::size_t surface) const {
+    const auto patch = surface - spheres_;
+    return patches_ ? static_cast<std::size_t>(patches_->wall(static_cast<std::int32_t>(patch))) : patch;
+  }
+  template <class Visit>
+  void visit(Visit&& visit) const {
+    for (std::size_t w = spheres_; w < open_; ++w)
+      for (auto k = rays_.pattern.row_begin[w]; k < rays_.pattern.row_begin[w + 1]; ++k)
+        visit(w, static_cast<std::size_t>(rays_.pattern.column[k]), k);
+  }
+
+  /// What to multiply values and variances of rays by, [sphere][wall].
+  struct Factors {
+    std::vector<double> value, variance;
+  };
+
+  /// Where no ray met a sphere, adds the pair.
+  Factors merge(const SphereWalls& known, Assembly& assembly) const {
+    Factors by{std::vector<double>(known.value.size(), 0), std::vector<double>(known.value.size(), 0)};
+    std::vector<double> sum(walls_, 0), variance(walls_, 0);
+    visit([&](std::size_t w, std::size_t j, std::int64_t k) {
+      if (j >= spheres_) return;
+      by.value[j * walls_ + wall_of(w)] += rays_.value[k];
+      by.variance[j * walls_ + wall_of(w)] += rays_.variance[k];
+      sum[wall_of(w)] += rays_.value[k];
+      variance[wall_of(w)] += rays_.variance[k];
+    });
+    for (std::size_t k = 0; k < by.value.size(); ++k) {
+      const std::size_t wall = k % walls_;
+      const double ray = sum[wall] > 0 ? variance[wall] / sum[wall] : one_ray_[wall];
+      const double merged = most_likely(by.value[k], ray, known.value[k], known.variance[k]);
+      const double of_rays = ray * std::max(ray, merged),
+                   error2 = of_rays * known.variance[k] / (of_rays + known.variance[k]);
+      if (by.value[k] > 0) {
+        by.value[k] = merged / by.value[k];
+        by.variance[k] = error2 / by.variance[k];
+      } else {
+        assembly.add(k / walls_, surface_of(wall, centre_m_[k / walls_]), merged, error2);
+      }
+    }
+    return by;
+  }
+
+  /// The wall, or of one that is cut the patch below a point.
+  std::size_t surface_of(std::size_t wall, const Vec3& point) const {
+    const auto w = static_cast<std::int32_t>(wall);
+    return spheres_ + (patches_ ? static_cast<std::size_t>(patches_->at(w, point)) : wall);
+  }
+
+  std::size_t spheres_, walls_, open_;
+  const std::vector<Vec3>& centre_m_;
+  const WallPatches* patches_;
+  ExchangeAreas rays_;
+  std::vector<double> one_ray_;  ///< [walls] the exchange area one ray stands for
+};
 
 }  // namespace
 
@@ -128,14 +232,16 @@ void refuse_what_shading_cannot_serve(const Enclosure& enclosure, double rays_pe
 ExchangeAreas shading_exchange_areas(const Enclosure& enclosure, const ShadingOptions& options) {
   refuse_what_shading_cannot_serve(enclosure, options.rays_per_particle);
   const PatchRays walls(enclosure, options.patches, options.threads);
+  const EmptyRoom room(enclosure, options.threads);
   Assembly assembly(surface_areas(walls.surfaces()));
-  for (const VisiblePair& pair : visible_pairs(enclosure, options.threads)) {
+  const SphereShading shading = shade_spheres(enclosure, room, options.threads);
+  for (const VisiblePair& pair : shading.pairs) {
     const double r_i = enclosure.radius_m[pair.i], r_j = enclosure.radius_m[pair.j];
-    const double full = 4 * pi * r_i * r_i * exact_two_sphere(r_i, r_j, pair.distance_m);
-    assembly.add(pair.i, pair.j, full * pair.open_share,
-                 full * full * pair.open_share * (1 - pair.open_share) / BeamLines::count);
+    const double full = 4 * pi * r_i * r_j * unobstructed_pair(pair.distance_m / (r_i + r_j));
+    assembly.add(pair.i, pair.j, full * pair.open_share, full * full * pair.variance);
   }
-  const bool anything_open = add_walls(walls.surfaces(), trace_walls(walls, options), assembly);
+  const WallRows rows(enclosure, walls.surfaces(), options.patches, trace_walls(walls, options));
+  const bool anything_open = rows.add(spheres_to_walls(enclosure, room, shading, options), assembly);
   if (anything_open)
     for (std::size_t i = 0; i < enclosure.sphere_count(); ++i)
       assembly.add(i, walls.surfaces().open_surface(), assembly.missing_m2(i), 0);

@@ -9,7 +9,7 @@
 
 #include "dem/base/error.h"
 #include "dem/base/random.h"
-#include "fit/correlation/unobstructed_pair.h"
+#include "raytrace/unobstructed_pair.h"
 #include "raytrace/exact.h"
 #include "tests/source_dir.h"
 

@@ -63,7 +63,7 @@ const std::map<std::string, std::vector<std::string>> arrows = [] {
             {"raytrace/balancing.h", "raytrace/conjugate_gradients.h", "raytrace/enclosure.h",
              "raytrace/exact.h", "raytrace/exchange.h", "raytrace/exchange_source.h", "raytrace/facets.h",
              "raytrace/mesh_check.h", "raytrace/morton.h", "raytrace/same_geometry.h",
-             "raytrace/stated_error.h", "raytrace/wall_patches.h"}});
+             "raytrace/stated_error.h", "raytrace/unobstructed_pair.h", "raytrace/wall_patches.h"}});
   const Folders embree = join({enclosure, {"raytrace/embree/"}}), rays = join({embree, {"raytrace/rays/"}});
   const Folders line_pass = join({embree, {"raytrace/line_pass/"}});
   const Folders lines = join({rays, line_pass, {"raytrace/lines/"}}),

@@ -1,4 +1,4 @@
-#include "fit/correlation/unobstructed_pair.h"
+#include "raytrace/unobstructed_pair.h"
 
 #include <array>
 #include <cstddef>
