@@ -1,6 +1,6 @@
 # libgranrad: every room in one shared library, for programs of others and for Python. The rooms themselves are static
 # libraries, which our programs link.
-set(granrad_rooms granrad_base granrad_ranks granrad_files granrad_toml granrad_page granrad_bed granrad_io granrad_mesh granrad_scene granrad_packing granrad_feed granrad_engine
+set(granrad_rooms granrad_base granrad_ranks granrad_files granrad_toml granrad_page granrad_bed granrad_cover granrad_io granrad_mesh granrad_scene granrad_packing granrad_feed granrad_engine
     granrad_native granrad_liggghts granrad_replay)
 foreach(folder raytrace fit coupling)
   get_property(found DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} PROPERTY BUILDSYSTEM_TARGETS)

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dem/base/error.h"
-#include "dem/bed/wall_cover.h"
+#include "dem/cover/wall_cover.h"
 #include "dem/bed/wall_shape.h"
 #include "dem/mesh/import_stl.h"
 #include "dem/scene/scene_parts.h"

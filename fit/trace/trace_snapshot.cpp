@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "dem/base/error.h"
-#include "dem/bed/wall_cover.h"
+#include "dem/cover/wall_cover.h"
 #include "dem/io/snapshot.h"
 #include "dem/mesh/import_stl.h"
 #include "fit/trace/overlaps.h"

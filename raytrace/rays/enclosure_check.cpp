@@ -9,7 +9,7 @@
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
 #include "dem/base/random.h"
-#include "dem/bed/wall_cover.h"
+#include "dem/cover/wall_cover.h"
 #include "dem/bed/wall_shape.h"
 #include "raytrace/embree/embree_tracer.h"
 #include "raytrace/facets.h"

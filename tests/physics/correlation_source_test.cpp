@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "dem/base/error.h"
-#include "dem/bed/wall_cover.h"
+#include "dem/cover/wall_cover.h"
 #include "dem/packing/packing.h"
 #include "fit/fitting/fit_correlation.h"
 #include "raytrace/rays/view_factors.h"

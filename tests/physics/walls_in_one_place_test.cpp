@@ -19,7 +19,7 @@
 #include "coupling/simulation/simulation.h"
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
-#include "dem/bed/wall_cover.h"
+#include "dem/cover/wall_cover.h"
 #include "dem/bed/wall_shape.h"
 #include "dem/engine_native.h"
 #include "raytrace/facets.h"

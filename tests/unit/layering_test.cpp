@@ -54,8 +54,9 @@ const std::map<std::string, std::vector<std::string>> arrows = [] {
   };
   const Folders ranks = {"dem/ranks/ranks.h"};
   const Folders base = {"dem/base/"}, bed = join({base, {"dem/bed/"}}), io = join({bed, {"dem/io/"}});
+  const Folders cover = join({bed, {"dem/cover/"}});
   const Folders mesh = join({bed, {"dem/mesh/"}});
-  const Folders scene = join({io, mesh, {"dem/scene/"}}), packing = join({bed, {"dem/packing/"}});
+  const Folders scene = join({io, cover, mesh, {"dem/scene/"}}), packing = join({bed, {"dem/packing/"}});
   const Folders engine = join({scene, {"dem/engine.h", "dem/step_clock.h", "dem/step_limit.h"}});
   const Folders enclosure =
       join({bed,
@@ -64,7 +65,7 @@ const std::map<std::string, std::vector<std::string>> arrows = [] {
              "raytrace/exact.h", "raytrace/exchange.h", "raytrace/exchange_source.h", "raytrace/facets.h",
              "raytrace/mesh_check.h", "raytrace/morton.h", "raytrace/same_geometry.h",
              "raytrace/stated_error.h", "raytrace/unobstructed_pair.h", "raytrace/wall_patches.h"}});
-  const Folders embree = join({enclosure, {"raytrace/embree/"}}), rays = join({embree, {"raytrace/rays/"}});
+  const Folders embree = join({enclosure, {"raytrace/embree/"}}), rays = join({embree, cover, {"raytrace/rays/"}});
   const Folders line_pass = join({embree, {"raytrace/line_pass/"}});
   const Folders lines = join({rays, line_pass, {"raytrace/lines/"}}),
                 paths = join({rays, {"raytrace/paths/"}});
@@ -94,6 +95,7 @@ const std::map<std::string, std::vector<std::string>> arrows = [] {
       {"dem/ranks/", join({base, {"dem/ranks/"}})},
       {"dem/page/", join({base, {"dem/page/"}})},
       {"dem/bed/", bed},
+      {"dem/cover/", cover},
       {"dem/io/", io},
       {"dem/mesh/", mesh},
       {"dem/scene/", scene},

@@ -1,4 +1,4 @@
-#include "dem/bed/wall_cover.h"
+#include "dem/cover/wall_cover.h"
 
 #include <fmt/core.h>
 
@@ -11,6 +11,7 @@
 #include "dem/base/error.h"
 #include "dem/bed/planar_cut.h"
 #include "dem/bed/wall_shape.h"
+#include "dem/cover/laid_plates.h"
 
 namespace granrad {
 
@@ -18,8 +19,6 @@ namespace {
 
 /// Places closer than this part of the extent of all walls are one.
 constexpr double same_place = 2e-7;
-/// Faces whose normals have a smaller cosine are not looked at further: heights of corners decide about the rest.
-constexpr double nearly_parallel = 0.999;
 
 /// A face and what is left of it.
 struct Faced {
@@ -54,71 +53,11 @@ std::vector<std::size_t> by_age(std::size_t walls, const std::vector<std::int64_
   return sorted;
 }
 
-/// Lays plates into the plane of an earlier plate they all but lie in. One that faces out of the outermost plane,
-/// where there is nothing to see, is turned: whoever draws a patch on a wall need not think of its winding.
-class Plates {
- public:
-  Plates(std::vector<Wall>& walls, double slack_m) : walls_(walls), slack_m_(slack_m) {
-    for (const auto& wall : walls_)
-      planes_.push_back(wall.vertices.size() >= 3 ? plane_of(wall) : std::nullopt);
-  }
-
-  std::vector<std::string> lay(const std::vector<std::size_t>& by_age) {
-    std::vector<std::string> notes;
-    for (std::size_t k = 1; k < by_age.size(); ++k)
-      for (std::size_t m = 0; m < k; ++m)
-        if (lies_in(by_age[k], by_age[m])) {
-          if (lay_on(by_age[m], by_age[k]))
-            notes.push_back(fmt::format("wall {} faced out of wall {} on which it lies, and was turned",
-                                        walls_[by_age[k]].name, walls_[by_age[m]].name));
-          break;
-        }
-    return notes;
-  }
-
- private:
-  bool lies_in(std::size_t later, std::size_t earlier) const {
-    if (!planes_[later] || !planes_[earlier]) return false;
-    if (std::abs(dot(planes_[later]->normal, planes_[earlier]->normal)) < nearly_parallel) return false;
-    const auto& v = walls_[later].vertices;
-    return std::all_of(v.begin(), v.end(),
-                       [&](const Vec3& p) { return std::abs(planes_[earlier]->height(p)) <= slack_m_; });
-  }
-
-  /// Whether all walls stand on the front side of a plane, and not all in it.
-  bool is_outermost(const WallPlane& plane) const {
-    double highest = 0;
-    for (const auto& wall : walls_)
-      for (const auto& p : wall.vertices) {
-        if (plane.height(p) < -slack_m_) return false;
-        highest = std::max(highest, plane.height(p));
-      }
-    return highest > slack_m_;
-  }
-
-  /// Whether the later one was turned.
-  bool lay_on(std::size_t earlier, std::size_t later) {
-    const WallPlane plane = *planes_[earlier];
-    bool turned = false;
-    if (dot(plane.normal, planes_[later]->normal) < 0) {
-      if (!is_outermost(plane)) return false;
-      flip(walls_[later]);
-      turned = true;
-    }
-    for (auto& p : walls_[later].vertices) p -= plane.height(p) * plane.normal;
-    planes_[later] = plane;
-    return turned;
-  }
-
-  std::vector<Wall>& walls_;
-  double slack_m_;
-  std::vector<std::optional<WallPlane>> planes_;
-};
-
 class Cover {
  public:
-  Cover(std::vector<Wall>& walls, const std::vector<std::size_t>& by_age, double slack_m)
-      : walls_(walls), slack_m_(slack_m) {
+  Cover(std::vector<Wall>& walls, const std::vector<std::size_t>& by_age, std::vector<char> feet,
+        double slack_m)
+      : walls_(walls), foot_(std::move(feet)), slack_m_(slack_m) {
     for (const auto& wall : walls_) closed_.push_back(is_closed(wall));
     for (const auto w : by_age)
       if (walls_[w].vertices.size() >= 3)
@@ -174,20 +113,21 @@ class Cover {
         zones_.insert(zones_.end(), {earlier, later});
       cut(earlier, later);
     } else if (a.wall != b.wall && (stands_on(b.wall, a.whole) || stands_on(a.wall, b.whole))) {
-      if (cut(earlier, later)) cut(later, earlier);
+      if (cut(earlier, later, true)) cut(later, earlier, true);
     }
   }
 
-  /// Whether a wall is a closed body and all of it on the front side of a face's plane.
+  /// Whether a wall is a closed body and all of it on the front side of a face's plane, or the foot of one.
   bool stands_on(std::size_t wall, const WallFace& face) const {
+    if (foot_[wall]) return true;
     if (!closed_[wall]) return false;
     const auto& v = walls_[wall].vertices;
     return std::all_of(v.begin(), v.end(),
                        [&](const Vec3& p) { return dot(face.normal, p - face.vertices[0]) >= -slack_m_; });
   }
 
-  /// Takes out of face `under` what face `over` covers; whether that is anything.
-  bool cut(std::size_t under, std::size_t over) {
+  /// Takes out of face `under` what face `over` covers; whether that is anything. `hidden`: neither is touched there.
+  bool cut(std::size_t under, std::size_t over, bool hidden = false) {
     Faced& a = faces_[under];
     const WallFace& cover = faces_[over].whole;
     std::vector<std::vector<Vec3>> left;
@@ -199,7 +139,7 @@ class Cover {
         left.push_back(std::move(rest));
       }
     }
-    if (after == before || !may_cover(walls_[a.wall], walls_[faces_[over].wall])) return false;
+    if (after == before || !may_cover(walls_[a.wall], walls_[faces_[over].wall], hidden)) return false;
     a.pieces = std::move(left);
     a.changed = true;
     covered_m2_[{faces_[over].wall, a.wall}] += before - after;
@@ -207,9 +147,10 @@ class Cover {
     return true;
   }
 
-  bool may_cover(const Wall& a, const Wall& b) {
-    if (a.contact == b.contact && a.opens_at_s == b.opens_at_s) return true;
-    const char* what = a.contact != b.contact ? "contact" : "opens_at_s";
+  bool may_cover(const Wall& a, const Wall& b, bool hidden) {
+    const bool touch_alike = hidden || a.contact == b.contact;
+    if (touch_alike && a.opens_at_s == b.opens_at_s) return true;
+    const char* what = !touch_alike ? "contact" : "opens_at_s";
     const auto problem =
         advised(fmt::format("wall {} lies on wall {}, and they differ in {} (one surface cannot have both)",
                             b.name, a.name, what),
@@ -276,7 +217,7 @@ class Cover {
   }
 
   std::vector<Wall>& walls_;
-  std::vector<char> closed_;  ///< by wall: a body
+  std::vector<char> closed_, foot_;  ///< by wall: a body; what a body of plates stands on
   double slack_m_ = 0;
   std::vector<Faced> faces_;  ///< in the order in which they were given
   std::map<std::pair<std::size_t, std::size_t>, double> covered_m2_;
@@ -290,9 +231,9 @@ class Cover {
 WallCover cover_walls(std::vector<Wall>& walls, const std::vector<std::int64_t>& order) {
   const double slack_m = slack_of(walls);
   const auto sorted = by_age(walls.size(), order);
-  auto notes = Plates(walls, slack_m).lay(sorted);
-  WallCover cover = Cover(walls, sorted, slack_m).run();
-  cover.notes.insert(cover.notes.begin(), notes.begin(), notes.end());
+  LaidPlates laid = lay_plates(walls, sorted, slack_m);
+  WallCover cover = Cover(walls, sorted, std::move(laid.is_foot), slack_m).run();
+  cover.notes.insert(cover.notes.begin(), laid.notes.begin(), laid.notes.end());
   return cover;
 }
 
