@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <numeric>
 #include <utility>
 
 #include "dem/base/constants.h"
@@ -14,9 +16,78 @@ namespace {
 
 using Polygon = std::vector<Vec3>;
 
-/// The polygon of a wall that is one, or nothing.
-Polygon polygon_of(const Wall& wall) {
-  return wall.triangles.empty() && plane_of(wall) ? wall.vertices : Polygon{};
+/// The convex hull of points of a plane, anticlockwise about its normal, without corners on straight edges (Andrew's
+/// monotone chain).
+Polygon hull(Polygon points, const Vec3& normal) {
+  const Vec3 across = normalized(std::abs(normal.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
+  const Vec3 u = normalized(across - dot(across, normal) * normal), v = cross(normal, u);
+  const auto place = [&](const Vec3& p) { return std::array{dot(u, p), dot(v, p)}; };
+  std::sort(points.begin(), points.end(), [&](const Vec3& a, const Vec3& b) { return place(a) < place(b); });
+  constexpr double straight = 1e-9;  // of the squared sides: rounding of corners
+  Polygon chain;
+  for (int half = 0; half < 2; ++half, std::reverse(points.begin(), points.end())) {
+    const std::size_t first = chain.size();
+    for (const Vec3& p : points) {
+      while (chain.size() >= first + 2) {
+        const Vec3 a = chain.back() - chain[chain.size() - 2], b = p - chain.back();
+        if (dot(normal, cross(a, b)) > straight * (dot(a, a) + dot(b, b))) break;
+        chain.pop_back();
+      }
+      chain.push_back(p);
+    }
+    chain.pop_back();
+  }
+  return chain;
+}
+
+/// Sets of triangles in one plane that hang together by edges, as the root of each triangle.
+std::vector<std::size_t> planar_sets(const Wall& wall, const std::vector<WallFace>& faces) {
+  constexpr double parallel = 1 - 1e-10;
+  std::vector<std::size_t> root(faces.size());
+  std::iota(root.begin(), root.end(), std::size_t{0});
+  const auto find = [&](std::size_t t) {
+    while (root[t] != t) t = root[t] = root[root[t]];
+    return t;
+  };
+  std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> at_edge;
+  for (std::size_t t = 0; t < faces.size(); ++t)
+    for (int c = 0; c < 3; ++c) {
+      const auto edge = std::minmax(wall.triangles[t][c], wall.triangles[t][(c + 1) % 3]);
+      const auto [other, first] = at_edge.try_emplace(edge, t);
+      if (!first && dot(faces[t].normal, faces[other->second].normal) > parallel) {
+        const std::size_t one = find(t), two = find(other->second);
+        root[std::max(one, two)] = std::min(one, two);
+      }
+    }
+  for (std::size_t t = 0; t < root.size(); ++t) root[t] = find(t);
+  return root;
+}
+
+/// Convex polygons that tile a wall: itself; of a mesh the convex polygons that triangles of one plane tile together, and the
+/// triangles beside them.
+std::vector<Polygon> tiles_of(const Wall& wall) {
+  if (wall.triangles.empty()) return {wall.vertices};
+  const std::vector<WallFace> faces = faces_of(wall);
+  const auto root = planar_sets(wall, faces);
+  std::map<std::size_t, std::vector<std::size_t>> sets;
+  for (std::size_t t = 0; t < faces.size(); ++t)
+    if (is_finite(faces[t].normal)) sets[root[t]].push_back(t);
+  std::vector<Polygon> tiles;
+  for (const auto& [first, set] : sets) {
+    Polygon corners;
+    double set_m2 = 0;
+    for (const std::size_t t : set) {
+      set_m2 += polygon_area(faces[t].vertices);
+      corners.insert(corners.end(), faces[t].vertices.begin(), faces[t].vertices.end());
+    }
+    Polygon whole = hull(corners, faces[first].normal);
+    constexpr double rounding = 1e-6;  // of single precision in STL files
+    if (whole.size() >= 3 && std::abs(polygon_area(whole) - set_m2) <= rounding * set_m2)
+      tiles.push_back(std::move(whole));
+    else
+      for (const std::size_t t : set) tiles.push_back(faces[t].vertices);
+  }
+  return tiles;
 }
 
 /// Where an edge crosses a level; both neighbours of an edge get the same point.
@@ -77,26 +148,39 @@ std::int32_t WallPatches::divide(Polygon polygon, const Grid& grid, std::int32_t
 }
 
 WallPatches::WallPatches(const std::vector<Wall>& walls, double longest_m, const std::vector<char>& cut) {
+  constexpr std::size_t most_tiles = 1000;  // of a wall: finer meshes stay whole
   for (std::size_t w = 0; w < walls.size(); ++w) {
     first_.push_back(count());
-    Polygon polygon;
-    if (cut.empty() || cut[w]) polygon = polygon_of(walls[w]);
-    if (polygon.empty()) {
-      tree_.push_back(-1);
+    first_tile_.push_back(tiles_.size());
+    std::vector<Polygon> tiles;
+    if (cut.empty() || cut[w]) tiles = tiles_of(walls[w]);
+    if (tiles.empty() || tiles.size() > most_tiles) {
       wall_.push_back(static_cast<std::int32_t>(w));
       corners_.emplace_back();
       continue;
     }
-    Grid grid{{normalized(polygon[1] - polygon[0]), {}}, longest_m};
-    grid.direction[1] = cross(polygon_normal(polygon), grid.direction[0]);
-    tree_.push_back(divide(std::move(polygon), grid, static_cast<std::int32_t>(w)));
-    if (tree_.back() < 0) tree_.back() = -1;
+    for (Polygon& polygon : tiles) {
+      Grid grid{{normalized(polygon[1] - polygon[0]), {}}, longest_m};
+      grid.direction[1] = cross(polygon_normal(polygon), grid.direction[0]);
+      const std::int32_t root = divide(polygon, grid, static_cast<std::int32_t>(w));
+      tiles_.push_back({make_face(std::move(polygon)), root});
+    }
   }
+  first_tile_.push_back(tiles_.size());
+}
+
+const WallPatches::Tile& WallPatches::tile_at(std::size_t wall, const Vec3& point) const {
+  const auto begin = tiles_.begin() + static_cast<std::ptrdiff_t>(first_tile_[wall]),
+             end = tiles_.begin() + static_cast<std::ptrdiff_t>(first_tile_[wall + 1]);
+  if (end - begin == 1) return *begin;
+  return *std::min_element(begin, end, [&](const Tile& a, const Tile& b) {
+    return distance_to(a.face, point) < distance_to(b.face, point);
+  });
 }
 
 std::int32_t WallPatches::at(std::int32_t wall, const Vec3& point) const {
-  std::int32_t node = tree_[static_cast<std::size_t>(wall)];
-  if (node < 0) return first(wall);
+  if (!is_cut(wall)) return first(wall);
+  std::int32_t node = tile_at(static_cast<std::size_t>(wall), point).root;
   while (node >= 0) {
     const Cut& cut = cuts_[static_cast<std::size_t>(node)];
     node = cut.child[dot(cut.normal, point) < cut.offset ? 0 : 1];

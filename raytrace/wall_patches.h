@@ -3,13 +3,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "dem/bed/wall_shape.h"
 #include "raytrace/enclosure.h"
 
 namespace granrad {
 
 /// Walls cut into patches, each a surface with a radiosity of its own: where light falls on a re-radiating wall is where
-/// it leaves. Patches are numbered from 0 on, wall by wall; cut are walls of one convex polygon, into
-/// even strips of both directions. Others (meshes) are one patch.
+/// it leaves. Patches are numbered from 0 on, wall by wall. A polygon is cut into even strips of both directions; so are
+/// the planar faces of a mesh of up to 1000 of them. Finer meshes (and walls not to be cut) are one patch.
 class WallPatches {
  public:
   /// Cuts into patches no longer than `longest_m` along either side. `cut`: [walls]; empty: all.
@@ -19,7 +20,10 @@ class WallPatches {
   /// Index of the wall of a patch.
   std::int32_t wall(std::int32_t patch) const { return wall_[static_cast<std::size_t>(patch)]; }
   std::int32_t first(std::int32_t wall) const { return first_[static_cast<std::size_t>(wall)]; }
-  bool is_cut(std::int32_t wall) const { return tree_[static_cast<std::size_t>(wall)] >= 0; }
+  bool is_cut(std::int32_t wall) const {
+    const auto w = static_cast<std::size_t>(wall);
+    return first_tile_[w + 1] > first_tile_[w];
+  }
   /// Corners of a patch of a wall that is cut.
   const std::vector<Vec3>& corners(std::int32_t patch) const {
     return corners_[static_cast<std::size_t>(patch)];
@@ -38,10 +42,17 @@ class WallPatches {
     std::int32_t child[2];
   };
   struct Grid;
+  /// A convex polygon of a wall: its first cut, or ~patch.
+  struct Tile {
+    WallFace face;
+    std::int32_t root;
+  };
+  const Tile& tile_at(std::size_t wall, const Vec3& point) const;
   std::int32_t divide(std::vector<Vec3> polygon, const Grid& grid, std::int32_t wall);
 
   std::vector<Cut> cuts_;
-  std::vector<std::int32_t> tree_;  ///< [walls] first cut; < 0: one patch
+  std::vector<Tile> tiles_;
+  std::vector<std::size_t> first_tile_;  ///< [walls + 1]
   std::vector<std::int32_t> first_, wall_;
   std::vector<std::vector<Vec3>> corners_;
 };

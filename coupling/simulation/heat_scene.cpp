@@ -208,7 +208,7 @@ RadiationSettings read_source(TomlTable table, const Scene& scene, RadiationKind
   settings.patches =
       table.choice(
           {"wall_patches",
-           "of adiabatic and grey flat walls, with embree, lines and shading: auto cuts them into patches with a radiosity each, whole gives each wall one"},
+           "of adiabatic and grey walls (polygons and flat faces of meshes), with embree, lines and shading: auto cuts them into patches with a radiosity each, whole gives each wall one"},
           {"auto", "whole"}, "auto") == "auto";
   settings.seed = static_cast<std::uint64_t>(table.integer({"seed", "of the rays"}, 0, 1LL << 62, 1));
 

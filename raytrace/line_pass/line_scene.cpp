@@ -299,9 +299,9 @@ void LineScene::cut_faces(const WallPatches& patches) {
       continue;
     }
     if (!faces.empty() && faces.back().surface >= spheres + patches.first(wall))
-      continue;  // its second triangle
+      continue;  // its further triangles
     for (std::int32_t p = patches.first(wall); p < patches.count() && patches.wall(p) == wall; ++p) {
-      faces.push_back({patches.corners(p), face.normal, spheres + p});
+      faces.push_back({patches.corners(p), polygon_normal(patches.corners(p)), spheres + p});
       for (Vec3& corner : faces.back().corners) corner -= middle;
     }
   }

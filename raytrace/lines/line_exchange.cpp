@@ -33,13 +33,6 @@ struct LineSums {
   std::int64_t leaked, ends, directions;  ///< of all replicates
 };
 
-double polygon_area(const std::vector<Vec3>& corners) {
-  Vec3 twice{};
-  for (std::size_t k = 2; k < corners.size(); ++k)
-    twice += cross(corners[k - 1] - corners[0], corners[k] - corners[0]);
-  return 0.5 * norm(twice);
-}
-
 /// Line ends expected in one direction, those on spheres seen from one side.
 double ends_per_direction(const LineScene& scene) {
   double area = 0;

@@ -2,7 +2,8 @@
 // radiosity for each wall they do not. Black spheres fill the lower part of a box whose floor is hot and whose side walls
 // re-radiate, so that light on them is uneven. All three ways to view factors, walls' heats reported for whole walls.
 // Planted, seen to fail: whole walls (340 %, tested), sides of the cuts swapped in the search (embree, shading). Blind to
-// patches of one size renumbered.
+// patches of one size renumbered. A mesh of several faces is cut like the faces as walls of their own (planted: left whole,
+// 200 % in the upper layer).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -98,6 +99,40 @@ TEST(WallPatchesPhysics, GiveTheHeatsOfTracedPaths) {
     beside(lines, tolerance, patches, "lines");
     beside(shading, tolerance, patches, "shading");
   }
+}
+
+/// The four re-radiating sides as the triangles of one mesh, as an STL file gives them.
+Case with_mantle_of_one_mesh() {
+  Case c = one_sided();
+  auto& walls = c.enclosure.walls;
+  Wall mantle = walls[0];
+  mantle.vertices.clear();
+  for (int w = 0; w < 4; ++w) {
+    const auto first = static_cast<std::int32_t>(mantle.vertices.size());
+    mantle.vertices.insert(mantle.vertices.end(), walls[w].vertices.begin(), walls[w].vertices.end());
+    mantle.triangles.push_back({first, first + 1, first + 2});
+    mantle.triangles.push_back({first, first + 2, first + 3});
+  }
+  walls.erase(walls.begin(), walls.begin() + 3);
+  walls[0] = mantle;
+  return c;
+}
+
+TEST(WallPatchesPhysics, AVesselOfOneMeshGivesTheHeatsOfItsFaces) {
+  const Case polygons = one_sided(), mesh = with_mantle_of_one_mesh();
+  const std::size_t n = polygons.enclosure.sphere_count();
+  const auto same = [&](const RadiositySource::PatchEstimate& estimate, const char* name) {
+    RadiositySource first(estimate, Closure::reciprocal), second(estimate, Closure::reciprocal);
+    const auto a = first.net_heat(polygons.enclosure, polygons.state(), 0).heat_W,
+               b = second.net_heat(mesh.enclosure, mesh.state(), 0).heat_W;
+    double upper_a = 0, upper_b = 0;
+    for (std::size_t i = 3 * n / 4; i < n; ++i) upper_a += a[i], upper_b += b[i];
+    EXPECT_NEAR(upper_b / upper_a, 1, 0.02)
+        << name;  // noise of the rays; one radiosity for the mantle: 5 times as much
+    EXPECT_NEAR(b[n + 1] / a[n + 4], 1, 0.005) << name;
+  };
+  same(by_rays(3000), "embree");
+  same(by_shading(6000), "shading");
 }
 
 TEST(WallPatchesPhysics, NothingFlowsInAnIsothermalBox) {

@@ -1,11 +1,14 @@
 // Requirement: walls are cut into patches that tile them, no longer than asked; points know their patch; walls that are
-// not to be cut stay as they are. Planted, seen to fail: sides swapped in the search (points in the wrong patch).
+// not to be cut stay as they are. Planted, seen to fail: sides swapped in the search (points in the wrong patch); the
+// first face of a mesh taken for the nearest.
 #include "raytrace/wall_patches.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
+#include "dem/base/constants.h"
 #include "dem/bed/wall_shape.h"
 
 namespace granrad {
@@ -68,12 +71,53 @@ TEST(WallPatches, TileEveryWallAndFindTheirPoints) {
   }
 }
 
-TEST(WallPatches, LeaveOthersWhole) {
-  Wall bent = polygon({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 1}});
-  bent.triangles = {{0, 1, 2}, {0, 2, 3}};
+/// The six faces of a box as one mesh that faces in, each of two triangles.
+Wall vessel(const Vec3& size) {
+  Wall mesh;
+  for (const Wall& side : box_walls({{0, 0, 0}, size})) {
+    const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), side.vertices.begin(), side.vertices.end());
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
+  }
+  return mesh;
+}
+
+TEST(WallPatches, AVesselOfOneMeshIsCutFaceByFace) {
+  const WallPatches patches({vessel({1, 2, 3})}, 0.5);
+  EXPECT_EQ(patches.count(), 2 * (2 * 4 + 4 * 6 + 2 * 6));
+  double sum = 0;
+  for (std::int32_t p = 0; p < patches.count(); ++p) {
+    const auto& corners = patches.corners(p);
+    sum += polygon_area(corners);
+    Vec3 middle{};
+    for (const Vec3& c : corners) middle += (1.0 / static_cast<double>(corners.size())) * c;
+    EXPECT_EQ(patches.at(0, middle), p);
+    EXPECT_GT(dot(polygon_normal(corners), Vec3{0.5, 1, 1.5} - middle), 0) << "faces in";
+  }
+  EXPECT_NEAR(sum, 22, 1e-9);
+}
+
+TEST(WallPatches, ABentFaceOfAMeshIsCutByTriangles) {
+  Wall corner;  // an L of three squares in one plane
+  corner.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}, {0, 2, 0}, {1, 2, 0}};
+  corner.triangles = {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {3, 4, 7}, {3, 7, 6}};
+  const WallPatches patches({corner}, 10);
+  EXPECT_EQ(patches.count(), 6);
+  EXPECT_EQ(patches.at(0, {0.9, 0.1, 0}), 0);
+}
+
+TEST(WallPatches, LeaveFineMeshesAndOthersWhole) {
+  Wall bent;  // a tube of very many facets
+  constexpr int sides = 600;
+  for (int k = 0; k < 2 * sides; ++k)
+    bent.vertices.push_back(
+        {std::cos(k / 2 * 2 * pi / sides), std::sin(k / 2 * 2 * pi / sides), k % 2 * 1.0});
+  for (std::int32_t k = 0; k < 2 * sides; ++k)
+    bent.triangles.push_back({k, (k + 1) % (2 * sides), (k + 2) % (2 * sides)});
   const std::vector<Wall> walls = {polygon({{0, 0, 0}, {3, 0, 0}, {3, 1, 0}, {0, 1, 0}}), bent};
-  const WallPatches none(walls, 0.1, {0, 0}), bent_only(walls, 0.1, {0, 1});
-  for (const WallPatches* patches : {&none, &bent_only}) {
+  const WallPatches none(walls, 0.1, {0, 0}), fine_only(walls, 0.1, {0, 1});
+  for (const WallPatches* patches : {&none, &fine_only}) {
     EXPECT_EQ(patches->count(), 2);
     for (std::int32_t w : {0, 1}) {
       EXPECT_FALSE(patches->is_cut(w));
