@@ -157,6 +157,58 @@ double region_solid_fraction(const Bed& bed, const Enclosure& enclosure, const B
   return region.volume() <= least * (1 + same_place) ? solid_fraction(bed, region) : 0;
 }
 
+/// Whether a wall goes on behind another one from an edge they share.
+bool goes_on_behind(const Wall& wall, const Wall& front, double tolerance) {
+  const auto plane = plane_of(front);
+  if (!plane) return false;
+  int shared = 0;
+  double lowest = 0;
+  for (const Vec3& v : wall.vertices) {
+    const double height = plane->height(v);
+    if (height > tolerance) return false;
+    lowest = std::min(lowest, height);
+    shared += std::any_of(front.vertices.begin(), front.vertices.end(),
+                          [&](const Vec3& p) { return norm(p - v) <= tolerance; });
+  }
+  return shared >= 2 && lowest < -tolerance;
+}
+
+/// Whether a wall belongs to a body with one of the walls `kept`: each goes on behind the other. The walls of a wider hopper
+/// before a channel do so too, but there the end of the channel, which they are behind, hides them.
+bool completes_a_body(const std::vector<Wall>& walls, std::size_t wall, const std::vector<char>& kept,
+                      double tolerance) {
+  bool completes = false;
+  for (std::size_t v = 0; v < kept.size(); ++v) {
+    if (!kept[v] || !goes_on_behind(walls[wall], walls[v], tolerance)) continue;
+    if (!goes_on_behind(walls[v], walls[wall], tolerance)) return false;
+    completes = true;
+  }
+  return completes;
+}
+
+/// By wall: whether it is there and touches the region, or belongs to a body of plates in the box that does. Without its
+/// further sides rays would look into the body.
+std::vector<char> walls_of_region(const Bed& bed, const Box& region, double tolerance) {
+  std::vector<char> may_complete, kept;
+  Box around = bed.box;
+  around.include(bed.box.min, tolerance);
+  around.include(bed.box.max, tolerance);
+  for (const Wall& wall : bed.walls) {
+    const bool is_there = bed.time_s < wall.opens_at_s;
+    kept.push_back(is_there && touches(wall, region, tolerance));
+    may_complete.push_back(is_there && !kept.back() &&
+                           std::all_of(wall.vertices.begin(), wall.vertices.end(),
+                                       [&](const Vec3& v) { return around.contains(v); }));
+  }
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (std::size_t w = 0; w < kept.size(); ++w)
+      if (may_complete[w] && !kept[w] && completes_a_body(bed.walls, w, kept, tolerance))
+        kept[w] = grows = true;
+  }
+  return kept;
+}
+
 }  // namespace
 
 std::vector<double> surface_areas(const Enclosure& enclosure) {
@@ -182,8 +234,9 @@ Enclosure make_enclosure(const Bed& bed, const Box& region) {
     enclosure.radius_m.push_back(bed.radius_m[i]);
     enclosure.particle.push_back(static_cast<std::int32_t>(i));
   }
+  const auto kept = walls_of_region(bed, region, tolerance);
   for (std::size_t w = 0; w < bed.walls.size(); ++w) {
-    if (bed.time_s >= bed.walls[w].opens_at_s || !touches(bed.walls[w], region, tolerance)) continue;
+    if (!kept[w]) continue;
     enclosure.walls.push_back(bed.walls[w]);
     enclosure.wall.push_back(static_cast<std::int32_t>(w));
   }

@@ -33,7 +33,7 @@ struct Enclosure {
 std::vector<double> surface_areas(const Enclosure& enclosure);
 
 /// Particles of `bed` whose centre lies in `region` (in the periodic image inside the box), and the walls of
-/// the bed that have a part in the region or on its boundary; shutters that are open at bed.time_s are gone.
+/// the bed that have a part in the region or on its boundary, with all sides of a body of plates; shutters that are open at bed.time_s are gone.
 /// A polygon wall without contact (the end of a channel) is moved outwards along its normal until it clears
 /// every sphere of the enclosure, and the polygons that border it are stretched along with it, so that a box
 /// stays closed. Throws InputError when a sphere centre lies behind a contact polygon on a face of the box,

@@ -41,7 +41,7 @@ std::string outside_walls_note(const Case& c) {
   if (names.empty()) return "";
   return fmt::format(
       "isothermal walls outside the heat-transfer region: {}. They count in no area and no coefficient, "
-      "and radiate only if they touch the region; [region] min_m, max_m would take them in",
+      "and radiate only if they (or the body they are a side of) touch the region; [region] min_m, max_m would take them in",
       names);
 }
 

@@ -388,7 +388,6 @@ bool EmbreeTracer::Impl::has_left(const Vec3& origin, const Vec3& direction) con
 /// moves along with it. A ray that meets nothing in `most_periods` is lost.
 Hit EmbreeTracer::Impl::trace_periodic(Vec3 origin, const Vec3& direction, std::int32_t from,
                                        const Vec3& from_normal) const {
-  constexpr int most_periods = 10000;  // only along an empty box, or exactly across its open sides
   const Vec3 period = box_max - box_min;
   const bool from_sphere = from >= 0 && from < spheres;
   Vec3 source = from_sphere ? balls[static_cast<std::size_t>(from)].centre : Vec3{};
@@ -404,7 +403,7 @@ Hit EmbreeTracer::Impl::trace_periodic(Vec3 origin, const Vec3& direction, std::
       return hit_on_facet(*loose_facets, facet, origin, 0);
 
   double travelled = 0;
-  for (int crossing = 0; crossing < most_periods; ++crossing) {
+  for (std::int64_t crossing = 0; crossing < most_periods; ++crossing) {
     int axis = 0;
     double limit = infinity;
     for (int k = 0; k < 3; ++k) {

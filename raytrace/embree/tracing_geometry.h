@@ -37,6 +37,8 @@ struct TracingGeometry {
   Vec3 box_min, box_max;
   Vec3 low{}, high{};  ///< bounds of all spheres and walls, padded
 
+  std::int64_t most_periods = 0;  ///< a ray may cross: see count_periods
+
   std::vector<Ball> balls;  ///< the spheres in their order, then further periodic images
   std::vector<std::int32_t> sphere_of_ball;
   std::vector<std::int32_t> first_image;  ///< [spheres + 1], images of a sphere beyond itself; periodic only
@@ -47,6 +49,7 @@ struct TracingGeometry {
 
  private:
   void choose_units(const Enclosure& enclosure);
+  void count_periods(const Enclosure& enclosure);
   void add_balls(const Enclosure& enclosure);
   void add_facets(const Enclosure& enclosure);
 };

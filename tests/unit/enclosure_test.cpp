@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "dem/base/constants.h"
@@ -51,6 +52,7 @@ TEST(Enclosure, KeepsTheParticlesOfTheRegionInTheirOrder) {
   EXPECT_NEAR(wall_area(e), surface(bed.box), 1e-18) << "nothing pokes out: the box is as it was";
 }
 
+// A body of plates is whole.
 // Planted error that this catches: the side walls not stretched with the ends (the box then has slits).
 TEST(Enclosure, OpenEndsClearTheSpheresAndTheBoxStaysClosed) {
   Bed bed = channel();
@@ -118,6 +120,34 @@ TEST(Enclosure, WallsOutsideTheRegionAndOpenShuttersAreLeftOut) {
   EXPECT_EQ(make_enclosure(bed, bed.box).wall, (std::vector<std::int32_t>{0, 1, 2, 3, 4, 5, 7}));
   bed.time_s = 1;
   EXPECT_EQ(make_enclosure(bed, bed.box).wall, (std::vector<std::int32_t>{0, 1, 2, 3, 4, 5}));
+}
+
+TEST(Enclosure, ABodyOfPlatesThatTouchesTheRegionIsWhole) {
+  Bed bed = channel();
+  const auto before = static_cast<std::int32_t>(bed.walls.size());
+  for (Wall side : box_walls({{0.004, 0.001, 0.01}, {0.006, 0.003, 0.02}})) {
+    flip(side);
+    bed.walls.push_back(side);
+  }
+  Box upper = bed.box;
+  upper.min.z = 0.015;  // the foot of the body is below, as the floor of the channel
+  const auto kept = make_enclosure(bed, upper).wall;
+  for (std::int32_t k = 0; k < 6; ++k)
+    EXPECT_EQ(std::count(kept.begin(), kept.end(), before + k), 1) << k << ": rays look into the body";
+  EXPECT_EQ(std::count(kept.begin(), kept.end(), 4), 0) << "the channel is open below";
+}
+
+TEST(Enclosure, AHopperBehindTheEndOfTheChannelIsLeftOut) {
+  Bed bed = channel();
+  Wall
+      hopper;  // wider than the channel, above it: with the side of the channel it makes an edge like that of a body
+  hopper.vertices = {{0.020, 0.014, 0.07}, {-0.010, 0.014, 0.07}, {0, 0.004, 0.05}, {0.010, 0.004, 0.05}};
+  bed.walls.push_back(hopper);
+  Box lower = bed.box;
+  lower.max.z = 0.045;  // or ends in the channel, far from the hopper
+  EXPECT_EQ(make_enclosure(bed, bed.box).wall, (std::vector<std::int32_t>{0, 1, 2, 3, 4, 5}));
+  bed.box.max.z = 0.049, bed.walls[5].vertices = box_walls(bed.box)[5].vertices;
+  EXPECT_EQ(make_enclosure(bed, lower).wall, (std::vector<std::int32_t>{0, 1, 2, 3, 4}));
 }
 
 TEST(Enclosure, RefusesCentresBehindContactWallsAndNaN) {
