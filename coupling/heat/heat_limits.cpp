@@ -4,36 +4,47 @@
 #include <cmath>
 #include <numeric>
 
-#include "coupling/heat/heat_step.h"
+#include "coupling/heat/heat_parts.h"
 #include "dem/base/constants.h"
 
 namespace granrad {
 
 namespace {
 
-struct Bounds {
-  double coldest_K, hottest_K;
-};
-
-Bounds bounds_of(const RadiativeState& state) {
-  double low = INFINITY, high = 0;
-  for (std::size_t s = 0; s < state.emissivity.size(); ++s) {
-    if (!state.radiates(s)) continue;
-    low = std::min(low, state.emissive_power_W_m2[s]);
-    high = std::max(high, state.emissive_power_W_m2[s]);
-  }
-  const auto temperature = [](double power) { return std::pow(power / stefan_boltzmann, 0.25); };
-  return {temperature(low), temperature(high)};
-}
-
-/// Heat that would just take each particle to a bound, W.
-std::vector<double> room_W(const Bed& bed, const Enclosure& enclosure, double bound_K, double interval_s) {
-  std::vector<double> room;
+/// Heat that would take each particle that far, W.
+std::vector<double> heat_of_rise_W(const Bed& bed, const Enclosure& enclosure,
+                                   const std::vector<double>& rise_K, double interval_s) {
+  std::vector<double> heat_W;
   for (const std::int32_t i : enclosure.particle)
-    room.push_back(heat_capacity_J_K(bed, static_cast<std::size_t>(i)) * (bound_K - bed.temperature_K[i]) /
-                   interval_s);
-  return room;
+    heat_W.push_back(heat_capacity_J_K(bed, static_cast<std::size_t>(i)) *
+                     rise_K[static_cast<std::size_t>(i)] / interval_s);
+  return heat_W;
 }
+
+/// Middle rule steps of conduction alone.
+class ConductionSteps {
+ public:
+  ConductionSteps(const Bed& bed, const Conductances& conductances, double step_s)
+      : bed_(bed), conductances_(conductances), rise_per_W_(bed.size()), middle_K_(bed.size()) {
+    for (std::size_t i = 0; i < bed.size(); ++i) rise_per_W_[i] = step_s / heat_capacity_J_K(bed, i);
+  }
+  void advance(std::vector<double>& T) {
+    find_heats(T);
+    for (std::size_t i = 0; i < T.size(); ++i) middle_K_[i] = T[i] + 0.5 * rise_per_W_[i] * heat_W_[i];
+    find_heats(middle_K_);
+    for (std::size_t i = 0; i < T.size(); ++i) T[i] += rise_per_W_[i] * heat_W_[i];
+  }
+
+ private:
+  void find_heats(const std::vector<double>& T) {
+    heat_W_.assign(T.size(), 0.0);
+    add_conduction_W(bed_, conductances_, T, heat_W_);
+  }
+
+  const Bed& bed_;
+  const Conductances& conductances_;
+  std::vector<double> rise_per_W_, middle_K_, heat_W_;
+};
 
 void give_to_walls(const Enclosure& enclosure, const RadiativeState& state, double pool_W,
                    RadiativeHeat& heat) {
@@ -57,12 +68,48 @@ void give_to_particles(const std::vector<double>& room, double pool_W, Radiative
 
 }  // namespace
 
-double keep_within_bounds(const Bed& bed, const Enclosure& enclosure, const RadiativeState& state,
-                          double interval_s, RadiativeHeat& heat) {
-  const Bounds bounds = bounds_of(state);
-  if (!(bounds.hottest_K > bounds.coldest_K)) return 0;
-  const auto most = room_W(bed, enclosure, bounds.hottest_K, interval_s);
-  const auto least = room_W(bed, enclosure, bounds.coldest_K, interval_s);
+TemperatureBounds temperature_bounds(const Bed& bed, const Conductances& conductances,
+                                     const RadiativeState& state) {
+  TemperatureBounds bounds{infinity, 0};
+  const auto include = [&](double T) {
+    bounds.coldest_K = std::min(bounds.coldest_K, T);
+    bounds.hottest_K = std::max(bounds.hottest_K, T);
+  };
+  for (std::size_t s = 0; s < state.emissivity.size(); ++s)
+    if (state.radiates(s)) include(std::pow(state.emissive_power_W_m2[s] / stefan_boltzmann, 0.25));
+  for (const auto& g : conductances.particles)
+    include(bed.temperature_K[g.i]), include(bed.temperature_K[g.j]);
+  for (const auto& g : conductances.walls)
+    include(bed.temperature_K[g.i]), include(bed.walls[g.wall].temperature_K);
+  return bounds;
+}
+
+ConductedTemperatures conducted_temperatures(const Bed& bed, const Conductances& conductances, double dt_s,
+                                             const TemperatureBounds& bounds) {
+  const std::int64_t parts = conduction_parts(dt_s, conduction_step_limit_s(bed, conductances));
+  const std::vector<double> anything(bed.size(), infinity);
+  ConductedTemperatures conducted{bed.temperature_K, anything, anything};
+  ConductionSteps steps(bed, conductances, dt_s / static_cast<double>(parts));
+  const bool conducts = !conductances.particles.empty() || !conductances.walls.empty();
+  for (std::int64_t k = conducts ? 1 : parts; k <= parts; ++k) {
+    if (conducts) steps.advance(conducted.end_K);
+    const double passed = static_cast<double>(k) / static_cast<double>(parts);
+    for (std::size_t i = 0; i < bed.size(); ++i) {
+      const double T = conducted.end_K[i];
+      double& rise = conducted.most_rise_K[i];
+      double& fall = conducted.most_fall_K[i];
+      rise = std::max(0.0, std::min(rise, (bounds.hottest_K - T) / passed));
+      fall = std::max(0.0, std::min(fall, (T - bounds.coldest_K) / passed));
+    }
+  }
+  return conducted;
+}
+
+double keep_within_bounds(const Bed& bed, const ConductedTemperatures& conducted, const Enclosure& enclosure,
+                          const RadiativeState& state, double interval_s, RadiativeHeat& heat) {
+  const auto most = heat_of_rise_W(bed, enclosure, conducted.most_rise_K, interval_s);
+  auto least = heat_of_rise_W(bed, enclosure, conducted.most_fall_K, interval_s);
+  for (double& q : least) q = -q;
   double above = 0, below = 0, exchanged = 0;
   for (std::size_t s = 0; s < most.size(); ++s) {
     exchanged += std::abs(heat.heat_W[s]);

@@ -1,15 +1,39 @@
 #pragma once
+#include <vector>
+
+#include "coupling/heat/conduction.h"
 #include "dem/bed/bed.h"
 #include "raytrace/exchange_source.h"
 
 namespace granrad {
 
-/// Keeps what the heats of an interval make of the temperatures between the coldest and the hottest surface that
-/// radiates: the heat of a sampled source is right in the mean, and by its noise may take a particle further than any
-/// surface it exchanges with. What a particle has too much goes back to the walls that radiate, in proportion to
-/// emissivity times area; without such walls to the particles that are still short of the bound. Sums are kept.
-/// Returns the heat moved over the heat exchanged, 0 when nothing was beyond.
-double keep_within_bounds(const Bed& bed, const Enclosure& enclosure, const RadiativeState& state,
-                          double interval_s, RadiativeHeat& heat);
+/// What no temperature of a bed without sources of its own may leave.
+struct TemperatureBounds {
+  double coldest_K, hottest_K;
+};
+
+/// The coldest and hottest of what radiates and of what conducts, at the powers of the state.
+TemperatureBounds temperature_bounds(const Bed& bed, const Conductances& conductances,
+                                     const RadiativeState& state);
+
+/// Where conduction alone leads over an interval.
+struct ConductedTemperatures {
+  std::vector<double> end_K;  ///< at its end
+  /// What heat held over the whole interval may add or take, K, so that no bound is passed on the way: the least over t
+  /// of the distance to the bound at t over the part t / dt of the interval that has passed.
+  std::vector<double> most_rise_K, most_fall_K;
+};
+
+/// By the steps of advance_in_parts with the conductances as they are.
+ConductedTemperatures conducted_temperatures(const Bed& bed, const Conductances& conductances, double dt_s,
+                                             const TemperatureBounds& bounds);
+
+/// Keeps what the heats of an interval make of the temperatures, together with conduction, between the bounds: held heats do
+/// not know what conduction does within the interval, and the heat of a sampled source is right in the mean, and by its noise
+/// may take a particle further than any surface it exchanges with. What a particle has too much goes back to the walls that
+/// radiate, in proportion to emissivity times area; without such walls to the particles that are still short of the bound.
+/// Sums are kept. Returns the heat moved over the heat exchanged, 0 when nothing was beyond.
+double keep_within_bounds(const Bed& bed, const ConductedTemperatures& conducted, const Enclosure& enclosure,
+                          const RadiativeState& state, double interval_s, RadiativeHeat& heat);
 
 }  // namespace granrad

@@ -26,15 +26,10 @@ double emission_slope(const Bed& bed, std::size_t i, double temperature_K) {
 /// Heat into every particle, W, and what walls give, with the particles at T.
 HeatPaths collect_heats(const Bed& bed, const Conductances& conductances, const std::vector<double>& T,
                         std::vector<double>& heat_W) {
-  for (const auto& g : conductances.particles) {
-    const double q = (g.solid_W_K + g.gas_W_K) * (T[g.j] - T[g.i]);
-    heat_W[g.i] += q;
-    heat_W[g.j] -= q;
-  }
+  add_conduction_W(bed, conductances, T, heat_W);
   CompensatedSum solid, gas, radiation;
   for (const auto& g : conductances.walls) {
     const double difference = bed.walls[g.wall].temperature_K - T[g.i];
-    heat_W[g.i] += (g.solid_W_K + g.gas_W_K) * difference;
     solid.add(g.solid_W_K * difference);
     gas.add(g.gas_W_K * difference);
   }
@@ -65,6 +60,17 @@ void keep_parts(Bed& bed, const Conductances& conductances, const std::vector<do
 
 }  // namespace
 
+void add_conduction_W(const Bed& bed, const Conductances& conductances, const std::vector<double>& T,
+                      std::vector<double>& heat_W) {
+  for (const auto& g : conductances.particles) {
+    const double q = (g.solid_W_K + g.gas_W_K) * (T[g.j] - T[g.i]);
+    heat_W[g.i] += q;
+    heat_W[g.j] -= q;
+  }
+  for (const auto& g : conductances.walls)
+    heat_W[g.i] += (g.solid_W_K + g.gas_W_K) * (bed.walls[g.wall].temperature_K - T[g.i]);
+}
+
 double conduction_step_limit_s(const Bed& bed, const Conductances& conductances) {
   std::vector<double> sum(bed.size(), 0.0);
   for (const auto& g : conductances.particles) {
@@ -90,10 +96,11 @@ double radiation_time_constant_s(const Bed& bed, double hottest_K) {
   return shortest;
 }
 
-std::vector<double> radiative_relaxation(const Bed& bed, double hottest_K, double interval_s) {
+std::vector<double> radiative_relaxation(const Bed& bed, const std::vector<double>& from_K, double hottest_K,
+                                         double interval_s) {
   std::vector<double> k(bed.size());
   for (std::size_t i = 0; i < bed.size(); ++i) {
-    const double T = bed.temperature_K[i], area = 4 * pi * bed.radius_m[i] * bed.radius_m[i];
+    const double T = from_K[i], area = 4 * pi * bed.radius_m[i] * bed.radius_m[i];
     const double chord = stefan_boltzmann * (hottest_K * hottest_K + T * T) * (hottest_K + T);
     k[i] = bed.materials[bed.material[i]].emissivity * area * chord * interval_s / heat_capacity_J_K(bed, i);
   }
@@ -139,8 +146,9 @@ HeatPaths advance_temperatures(Bed& bed, const Conductances& conductances, doubl
   return received;
 }
 
-std::vector<double> midway_temperatures_K(const Bed& bed, double interval_s) {
-  auto midway = bed.temperature_K;
+std::vector<double> midway_temperatures_K(const Bed& bed, std::vector<double> conducted_K,
+                                          double interval_s) {
+  auto midway = std::move(conducted_K);
   for (std::size_t i = 0; i < bed.size(); ++i)
     midway[i] += bed.radiative_heat_W[i] * interval_s / (2 * heat_capacity_J_K(bed, i));
   return midway;

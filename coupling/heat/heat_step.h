@@ -32,10 +32,15 @@ double radiation_time_constant_s(const Bed& bed, double hottest_K = 0);
 inline constexpr double explicit_radiation_fraction = 0.1;
 
 /// What each particle's temperature makes of its radiation within an interval: k = eps A s dt / (m c), with s the slope
-/// of the chord of sigma T^4 from its temperature to the hottest, s = sigma (T_h^2 + T^2)(T_h + T). sigma T^4 lies
+/// of the chord of sigma T^4 from its temperature `from_K` to the hottest, s = sigma (T_h^2 + T^2)(T_h + T). sigma T^4 lies
 /// below that chord: T + Q dt / (m c) with the heat Q of emission linearised by it stays between the coldest and the
 /// hottest temperature for any dt, and tends to the right equilibrium; first order in dt.
-std::vector<double> radiative_relaxation(const Bed& bed, double hottest_K, double interval_s);
+std::vector<double> radiative_relaxation(const Bed& bed, const std::vector<double>& from_K, double hottest_K,
+                                         double interval_s);
+
+/// Adds what contacts and gas give each particle, W, with the particles at T.
+void add_conduction_W(const Bed& bed, const Conductances& conductances, const std::vector<double>& T,
+                      std::vector<double>& heat_W);
 
 /// Advances bed.temperature_K by one explicit Euler step: m c dT = dt (sum_j G_ij (T_j - T_i) + Q_i), Q_i the
 /// held bed.radiative_heat_W. The heat of a pair is one number given to both ends with opposite signs, so
@@ -53,12 +58,12 @@ HeatPaths advance_temperatures(Bed& bed, const Conductances& conductances, doubl
 /// negative entry and rows that sum to one: no temperature leaves the range of those around.
 std::vector<double> mid_step_temperatures_K(const Bed& bed, const Conductances& conductances, double dt_s);
 
-/// Temperatures in the middle of the coming radiation interval, K, extrapolated with the heats held until now:
-/// T_i + Q_i dt / (2 m c). A source asked for heats at these makes holding them second order in dt instead of
+/// Temperatures in the middle of the coming radiation interval, K, extrapolated with the heats held until now from where
+/// conduction alone leads by then: T_i + Q_i dt / (2 m c). A source asked for heats at these makes holding them second order in dt instead of
 /// first (error of a lone sphere after 2 s at dt = 0.01 s: 2e-7 instead of 1.1e-4), and it conserves energy
 /// as before, since it gives the heats of one set of temperatures. For dt up to explicit_radiation_fraction of
 /// radiation_time_constant_s.
-std::vector<double> midway_temperatures_K(const Bed& bed, double interval_s);
+std::vector<double> midway_temperatures_K(const Bed& bed, std::vector<double> conducted_K, double interval_s);
 
 /// sum m c T, J, compensated.
 double thermal_energy_J(const Bed& bed);

@@ -55,6 +55,23 @@ Conductances joined(const Conductances& own, std::size_t particles) {
   return all;
 }
 
+/// Throws NumericalError when a heat is not a number.
+HeatModel::ParticleHeat by_particle(const Bed& bed, const Enclosure& enclosure, RadiativeHeat all) {
+  const auto to_particles = [&](const std::vector<double>& by_surface) {
+    std::vector<double> values(by_surface.empty() ? 0 : bed.size(), 0.0);
+    for (std::size_t k = 0; k < enclosure.particle.size() && !by_surface.empty(); ++k)
+      values[enclosure.particle[k]] = by_surface[k];
+    return values;
+  };
+  HeatModel::ParticleHeat result{to_particles(all.heat_W), to_particles(all.standard_error_W),
+                                 std::move(all)};
+  for (std::size_t i = 0; i < bed.size(); ++i)
+    if (!std::isfinite(result.heat_W[i]))
+      throw NumericalError(
+          fmt::format("radiative heat of particle {} is not a number at {:g} s", bed.id[i], bed.time_s));
+  return result;
+}
+
 /// Where nothing says it, the walls close (check_radiation saw to it) and no ray asks.
 double surroundings_K(const Case& c) {
   return known_surroundings_K(c.flow, c.heat.surroundings_K).value_or(c.flow.particle_temperature_K);
@@ -86,54 +103,49 @@ const Conductances& HeatModel::conduct(const Bed& bed, Flow& flow) {
 HeatModel::ParticleHeat HeatModel::draw_radiation(const Bed& bed, std::uint64_t draw) {
   const Enclosure enclosure = make_enclosure(bed, case_.flow.region);
   RadiativeState state = radiative_state(bed, bed.temperature_K, enclosure, surroundings_K(case_));
-  if (interval_s_ > 0) add_relaxation(bed, enclosure, state);
-  return draw_radiation(bed, enclosure, state, draw);
+  if (interval_s_ > 0) add_relaxation(bed, bed.temperature_K, enclosure, state);
+  return by_particle(bed, enclosure, draw_heats(enclosure, state, draw));
 }
 
-HeatModel::ParticleHeat HeatModel::draw_radiation(const Bed& bed, const Enclosure& enclosure,
-                                                  const RadiativeState& state, std::uint64_t draw) {
-  ParticleHeat result;
+RadiativeHeat HeatModel::draw_heats(const Enclosure& enclosure, const RadiativeState& state,
+                                    std::uint64_t draw) {
   if (is_isothermal(state)) {
-    result.all.heat_W.assign(enclosure.surface_count(), 0);
-    result.all.standard_error_W.assign(enclosure.surface_count(), 0);
-  } else {
-    if (!source_) source_ = make_radiation_source(case_.heat.radiation, case_.flow, threads_);
-    result.all = source_->net_heat(enclosure, state, draw);
+    RadiativeHeat none;
+    none.heat_W.assign(enclosure.surface_count(), 0);
+    none.standard_error_W.assign(enclosure.surface_count(), 0);
+    return none;
   }
-  if (state.implicit)
-    result.limited_share = keep_within_bounds(bed, enclosure, state, interval_s_, result.all);
-  const auto to_particles = [&](const std::vector<double>& by_surface) {
-    std::vector<double> by_particle(by_surface.empty() ? 0 : bed.size(), 0.0);
-    for (std::size_t k = 0; k < enclosure.particle.size() && !by_surface.empty(); ++k)
-      by_particle[enclosure.particle[k]] = by_surface[k];
-    return by_particle;
-  };
-  result.heat_W = to_particles(result.all.heat_W);
-  result.standard_error_W = to_particles(result.all.standard_error_W);
-  for (std::size_t i = 0; i < bed.size(); ++i)
-    if (!std::isfinite(result.heat_W[i]))
-      throw NumericalError(
-          fmt::format("radiative heat of particle {} is not a number at {:g} s", bed.id[i], bed.time_s));
-  return result;
+  if (!source_) source_ = make_radiation_source(case_.heat.radiation, case_.flow, threads_);
+  return source_->net_heat(enclosure, state, draw);
 }
 
 /// The state for the coming interval. Short ones: temperatures of its middle, of second order. Long ones: the emission
-/// of its end, linearised; see heat_step.h.
-RadiativeState HeatModel::state_ahead(const Bed& bed, const Enclosure& enclosure) const {
+/// of its end, linearised (see heat_step.h), from where conduction leads by then: a particle that conduction warms faster
+/// than the interval emits as the warm one it is.
+HeatModel::Ahead HeatModel::look_ahead(const Bed& bed, const Enclosure& enclosure) const {
   const double around_K = surroundings_K(case_);
   const double hottest_K = hottest_radiating_K(bed, enclosure, around_K);
   const bool implicit =
       interval_s_ > explicit_radiation_fraction * (1 + 1e-6) * radiation_time_constant_s(bed, hottest_K);
-  RadiativeState state = radiative_state(
-      bed, implicit ? bed.temperature_K : midway_temperatures_K(bed, interval_s_), enclosure, around_K);
-  add_relaxation(bed, enclosure, state);
-  state.implicit = implicit;
-  return state;
+  const auto bounds =
+      temperature_bounds(bed, conductances_, radiative_state(bed, bed.temperature_K, enclosure, around_K));
+  Ahead ahead;
+  ahead.conducted =
+      conducted_temperatures(bed, conductances_, implicit ? interval_s_ : 0.5 * interval_s_, bounds);
+  const auto& conducted_K = ahead.conducted.end_K;
+  const auto ahead_K = implicit ? conducted_K : midway_temperatures_K(bed, conducted_K, interval_s_);
+  ahead.state = radiative_state(bed, ahead_K, enclosure, around_K);
+  add_relaxation(bed, implicit ? conducted_K : bed.temperature_K, enclosure, ahead.state);
+  ahead.state.implicit = implicit;
+  return ahead;
 }
 
-void HeatModel::add_relaxation(const Bed& bed, const Enclosure& enclosure, RadiativeState& state) const {
-  const auto relaxation =
-      radiative_relaxation(bed, hottest_radiating_K(bed, enclosure, surroundings_K(case_)), interval_s_);
+void HeatModel::add_relaxation(const Bed& bed, const std::vector<double>& from_K, const Enclosure& enclosure,
+                               RadiativeState& state) const {
+  double hottest_K = hottest_radiating_K(bed, enclosure, surroundings_K(case_));
+  for (const std::int32_t i : enclosure.particle)
+    hottest_K = std::max(hottest_K, from_K[static_cast<std::size_t>(i)]);
+  const auto relaxation = radiative_relaxation(bed, from_K, hottest_K, interval_s_);
   state.relaxation.assign(enclosure.surface_count(), 0);
   for (std::size_t s = 0; s < enclosure.sphere_count(); ++s)
     state.relaxation[s] = relaxation[static_cast<std::size_t>(enclosure.particle[s])];
@@ -142,13 +154,16 @@ void HeatModel::add_relaxation(const Bed& bed, const Enclosure& enclosure, Radia
 void HeatModel::radiate(Bed& bed, double interval_s) {
   interval_s_ = interval_s;
   const Enclosure enclosure = make_enclosure(bed, case_.flow.region);
-  RadiativeState state = state_ahead(bed, enclosure);
+  auto [state, conducted] = look_ahead(bed, enclosure);
   const auto update = static_cast<std::uint64_t>(radiation_.updates);
-  if (case_.heat.radiation.error > 0) state.wanted_error_W = wanted_error_W(bed, enclosure, state, update);
-  auto drawn = draw_radiation(bed, enclosure, state, update);
-  const RadiativeHeat& heat = drawn.all;
-  bed.radiative_heat_W = std::move(drawn.heat_W);
-  walls_.hold_radiation(make_enclosure(bed, case_.flow.region), heat.heat_W);
+  if (case_.heat.radiation.error > 0) state.wanted_error_W = wanted_error_W(enclosure, state, update);
+  RadiativeHeat heat = draw_heats(enclosure, state, update);
+  if (state.implicit) {
+    const double moved = keep_within_bounds(bed, conducted, enclosure, state, interval_s_, heat);
+    radiation_.limited_share = std::max(radiation_.limited_share, moved);
+  }
+  bed.radiative_heat_W = by_particle(bed, enclosure, heat).heat_W;
+  walls_.hold_radiation(enclosure, heat.heat_W);
   radiation_.updates += 1;
   radiation_.rays += heat.rays;
   radiation_.lost_rays += heat.lost_rays;
@@ -159,17 +174,15 @@ void HeatModel::radiate(Bed& bed, double interval_s) {
   radiation_.reciprocity_rms = heat.reciprocity_rms;
   radiation_.absolute_heat_W += std::abs(heat.isothermal_wall_heat_W);
   radiation_.implicit_updates += state.implicit;
-  radiation_.limited_share = std::max(radiation_.limited_share, drawn.limited_share);
 }
 
 /// So that the mean wall heat over all updates of the run has the error asked for, relative to the mean so far; at the
 /// first update relative to a first look.
-double HeatModel::wanted_error_W(const Bed& bed, const Enclosure& enclosure, const RadiativeState& state,
+double HeatModel::wanted_error_W(const Enclosure& enclosure, const RadiativeState& state,
                                  std::uint64_t update) {
   double mean_W =
       radiation_.absolute_heat_W / static_cast<double>(std::max<std::int64_t>(1, radiation_.updates));
-  if (radiation_.updates == 0)
-    mean_W = std::abs(draw_radiation(bed, enclosure, state, update).all.isothermal_wall_heat_W);
+  if (radiation_.updates == 0) mean_W = std::abs(draw_heats(enclosure, state, update).isothermal_wall_heat_W);
   const double updates = std::max(1.0, case_.flow.end_time_s / interval_s_);
   return case_.heat.radiation.error * mean_W * std::sqrt(updates);
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "coupling/heat/energy_ledger.h"
+#include "coupling/heat/heat_limits.h"
 #include "coupling/simulation/flow.h"
 #include "coupling/simulation/heat_scene.h"
 #include "coupling/simulation/wall_heats.h"
@@ -61,8 +62,7 @@ class HeatModel {
   /// random numbers by `draw`. Changes nothing in the bed or the books. 0 for particles outside the region.
   struct ParticleHeat {
     std::vector<double> heat_W, standard_error_W;
-    RadiativeHeat all;         ///< by surface
-    double limited_share = 0;  ///< moved by keep_within_bounds
+    RadiativeHeat all;  ///< by surface
   };
   ParticleHeat draw_radiation(const Bed& bed, std::uint64_t draw);
   /// One heat step with what conduct and radiate found. Throws NumericalError.
@@ -78,13 +78,18 @@ class HeatModel {
   void load(const StateBlock& radiation, const StateBlock& ledger);
 
  private:
-  ParticleHeat draw_radiation(const Bed& bed, const Enclosure& enclosure, const RadiativeState& state,
-                              std::uint64_t draw);
-  RadiativeState state_ahead(const Bed& bed, const Enclosure& enclosure) const;
-  /// What the temperature of each particle makes of its heat until the next update (RadiativeState::relaxation).
-  void add_relaxation(const Bed& bed, const Enclosure& enclosure, RadiativeState& state) const;
-  double wanted_error_W(const Bed& bed, const Enclosure& enclosure, const RadiativeState& state,
-                        std::uint64_t update);
+  RadiativeHeat draw_heats(const Enclosure& enclosure, const RadiativeState& state, std::uint64_t draw);
+  /// The state a source is asked for, and where conduction alone leads.
+  struct Ahead {
+    RadiativeState state;
+    ConductedTemperatures conducted;
+  };
+  Ahead look_ahead(const Bed& bed, const Enclosure& enclosure) const;
+  /// What the temperature of each particle, `from_K`, makes of its heat until the next update
+  /// (RadiativeState::relaxation).
+  void add_relaxation(const Bed& bed, const std::vector<double>& from_K, const Enclosure& enclosure,
+                      RadiativeState& state) const;
+  double wanted_error_W(const Enclosure& enclosure, const RadiativeState& state, std::uint64_t update);
 
   const Case& case_;
   int threads_;

@@ -85,6 +85,26 @@ std::string sampled_contacts_note(const Case& c, const StepLimits& limits, const
       plan.tick_s, limits.hertz_time_s, steps);
 }
 
+/// Gas lenses are looked at where spheres stand at each heat step.
+std::string sampled_lenses_note(const Case& c, const StepLimits& limits, const TimePlan& plan,
+                                const Bed& bed) {
+  if (!c.heat.conduction.gas || !computes_forces(c.flow.engine) || !(limits.motion_s < infinity)) return "";
+  const double radius = bed.size() ? *std::max_element(bed.radius_m.begin(), bed.radius_m.end())
+                                   : c.flow.particle_diameter_m / 2;
+  const double reach_m = lens_cutoff_gap_m(c.heat.conduction, radius);
+  const double moved_m = 2 * radius / limits.motion_s * plan.tick_s;
+  constexpr double coarse = 0.5, fine = 0.1;
+  if (!(moved_m > coarse * reach_m)) return "";
+  const double steps =
+      std::max(1.0, std::floor(static_cast<double>(plan.steps_per_tick) * fine * reach_m / moved_m));
+  return advised(
+      fmt::format(
+          "gas lenses reach {:.2g} m and are followed at heat steps alone, in each of which the fastest "
+          "particle moves {:.2g} m: right in the mean of many encounters, coarse for one",
+          reach_m, moved_m),
+      fmt::format("conduction.every_steps = {:.0f} follows each", steps));
+}
+
 }  // namespace
 
 Simulation::Simulation(const Case& c, int threads)
@@ -99,6 +119,8 @@ void Simulation::start(Bed bed) {
   notes_ = case_.flow.notes;
   if (const auto note = outside_note(case_.flow, bed_); !note.empty()) notes_.push_back(note);
   if (auto note = sampled_contacts_note(case_, limits_, plan_); !note.empty())
+    notes_.push_back(std::move(note));
+  if (auto note = sampled_lenses_note(case_, limits_, plan_, bed_); !note.empty())
     notes_.push_back(std::move(note));
   if (case_.heat.radiation.kind != RadiationKind::none)
     for (auto& note : turn_meshes_to_particles(bed_, case_.flow.region)) notes_.push_back(std::move(note));

@@ -34,7 +34,7 @@ RadiativeState implicit_state(const Bed& bed, double dt_s) {
   for (double T : bed.temperature_K) state.add(T, bed.materials[0].emissivity);
   for (const auto& wall : bed.walls) state.add(wall.temperature_K, wall.emissivity, wall.role);
   state.add(300, 1, WallRole::open);
-  state.relaxation = radiative_relaxation(bed, hottest, dt_s);
+  state.relaxation = radiative_relaxation(bed, bed.temperature_K, hottest, dt_s);
   state.relaxation.resize(state.emissivity.size(), 0);
   state.implicit = true;
   return state;
@@ -80,7 +80,7 @@ double after_one_time_constant(int steps) {
   const double all_s = radiation_time_constant_s(bed), dt_s = all_s / steps;
   const double area = 4 * pi * radius_m * radius_m;
   for (int k = 0; k < steps; ++k) {
-    const double f = 1 / (1 + radiative_relaxation(bed, 1000, dt_s)[0]);
+    const double f = 1 / (1 + radiative_relaxation(bed, bed.temperature_K, 1000, dt_s)[0]);
     bed.radiative_heat_W[0] = f * area * (emissive_power(1000) - emissive_power(bed.temperature_K[0]));
     advance_temperatures(bed, {}, dt_s);
   }
@@ -105,7 +105,9 @@ TEST(LongRadiationSteps, HeatBeyondTheBoundsGoesBackToTheWalls) {
   heat.heat_W[1] = 30 * capacity / dt_s;   // to 1020 K
   heat.heat_W[4] = -130 * capacity / dt_s;
   heat.isothermal_wall_heat_W = 130 * capacity / dt_s;
-  const double share = keep_within_bounds(bed, enclosure, implicit_state(bed, dt_s), dt_s, heat);
+  const auto state = implicit_state(bed, dt_s);
+  const auto conducted = conducted_temperatures(bed, {}, dt_s, temperature_bounds(bed, {}, state));
+  const double share = keep_within_bounds(bed, conducted, enclosure, state, dt_s, heat);
   EXPECT_NEAR(share, 20.0 / 130, 1e-12);
   EXPECT_EQ(heat.heat_W[0], 100 * capacity / dt_s);
   EXPECT_NEAR(heat.heat_W[1], 10 * capacity / dt_s, 1e-9 * capacity / dt_s);

@@ -92,7 +92,7 @@ double mean_after_5_s(Case& c, ExchangeSource& source) {
   for (std::size_t i = 0; i < c.enclosure.sphere_count(); ++i)
     bed.add(c.enclosure.centre_m[i], {}, c.enclosure.radius_m[i], 300);
   for (int update = 0; update < 500; ++update) {
-    c.sphere_temperature_K = midway_temperatures_K(bed, 0.01);
+    c.sphere_temperature_K = midway_temperatures_K(bed, bed.temperature_K, 0.01);
     const auto heat = source.net_heat(c.enclosure, c.state(), static_cast<std::uint64_t>(update));
     std::copy_n(heat.heat_W.begin(), bed.size(), bed.radiative_heat_W.begin());
     advance_temperatures(bed, {}, 0.01);
