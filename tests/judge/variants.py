@@ -101,6 +101,8 @@ def doubled(scene):
         p["place"][axis] += scene["size"][axis]
         other["particles"].append(p)
     other["rays"] = scene["rays"] * (2 if scene["source"] == "paths" else 1)
+    if scene["engine"] == "native":  # a higher box lets spheres fall faster, and the step follows
+        other["dem"] = dict(scene["dem"], step_s=scene.get("step_s", scene["every"]))
     return "doubled", other, 2, same_walls()
 
 
@@ -196,7 +198,9 @@ def variants(scene):
                                                            as_solids, reordered]
         if scene["region"]:
             walls = []
-        return [make(scene) for make in [moved, mirrored, turned, larger, finer] + walls]
+        if scene["gas"] is None:  # gas lenses are followed at heat steps alone
+            walls = walls + [finer]
+        return [make(scene) for make in [moved, mirrored, turned, larger] + walls]
     if not scene["frozen"] or scene["feed"] or not scene["particles"]:
         return []
     all_of_them = [moved, mirrored, turned, larger, renumbered]
@@ -209,7 +213,8 @@ def variants(scene):
         if scene["source"] != "lines":
             all_of_them.append(as_walls("meshes"))
             all_of_them.append(as_solids)
-    if scene["region"] and alone(scene)[1]["particles"]:
+    # a table is read by the solid fraction of the region, in which parts of those outside count
+    if scene["region"] and alone(scene)[1]["particles"] and scene["source"] != "correlation":
         all_of_them.append(alone)
     if any(wall.get("opens", 1) in (0.0, 2.0) for wall in walls_and_plates(scene)):
         all_of_them.append(unshuttered)
