@@ -127,9 +127,9 @@ TEST(WallPatchesPhysics, AVesselOfOneMeshGivesTheHeatsOfItsFaces) {
                b = second.net_heat(mesh.enclosure, mesh.state(), 0).heat_W;
     double upper_a = 0, upper_b = 0;
     for (std::size_t i = 3 * n / 4; i < n; ++i) upper_a += a[i], upper_b += b[i];
-    EXPECT_NEAR(upper_b / upper_a, 1, 0.02)
-        << name;  // noise of the rays; one radiosity for the mantle: 5 times as much
-    EXPECT_NEAR(b[n + 1] / a[n + 4], 1, 0.005) << name;
+    EXPECT_NEAR(upper_b / upper_a, 1, 0.1)
+        << name;  // noise of the rays: 3 %; one radiosity for the mantle: 330 %
+    EXPECT_NEAR(b[n + 1] / a[n + 4], 1, 0.01) << name;
   };
   same(by_rays(3000), "embree");
   same(by_shading(6000), "shading");
