@@ -129,7 +129,7 @@ case ${1:-} in
       ((${#files[@]})) || mapfile -t files < <(sources | grep '\.cpp$' | grep -v '^tests/bench')
     fi
     say "clang-tidy on ${#files[@]} sources"
-    printf '%s\n' "${files[@]}" | xargs -P "$(nproc)" -n 4 clang-tidy-14 -p "$build" --quiet
+    printf '%s\n' "${files[@]}" | xargs -P "$(nproc)" -n 4 clang-tidy-14 -p "$build" --quiet --extra-arg=-Wno-unknown-warning-option
     ;;
   package)
     packages+=("${liggghts_engine[@]}" "${python[@]}" "${documents[@]}" "${packaging[@]}")

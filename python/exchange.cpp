@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include "dem/base/error.h"
+#include "fit/trace/snapshot_enclosure.h"
 #include "fit/trace/trace_snapshot.h"
 #include "python/bindings.h"
 #include "raytrace/exact.h"

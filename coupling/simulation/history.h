@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "coupling/simulation/csv_log.h"
+#include "dem/base/files/csv_log.h"
 
 namespace granrad {
 

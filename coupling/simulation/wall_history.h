@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "coupling/simulation/csv_log.h"
+#include "dem/base/files/csv_log.h"
 
 namespace granrad {
 

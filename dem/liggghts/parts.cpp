@@ -27,7 +27,8 @@ class Profile {
   /// The part of the domain that holds them, in whole blocks.
   double extent() const {
     constexpr int per_block = bins / blocks;
-    return static_cast<double>((last_ + per_block - 1) / per_block - first_ / per_block) / blocks;
+    const int from = first_ / per_block, to = (last_ + per_block - 1) / per_block;
+    return static_cast<double>(to - from) / blocks;
   }
   /// Where slabs begin that hold about as many each.
   std::vector<double> split(int slabs) const {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "dem/base/error.h"
-#include "dem/cover/wall_cover.h"
 #include "dem/bed/wall_shape.h"
+#include "dem/cover/wall_cover.h"
 #include "dem/mesh/import_stl.h"
 #include "dem/scene/scene_parts.h"
 

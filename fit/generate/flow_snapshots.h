@@ -6,6 +6,7 @@
 
 #include "dem/base/toml/toml_reader.h"
 #include "fit/generate/flow_run.h"
+#include "fit/trace/snapshot_enclosure.h"
 #include "fit/trace/trace_snapshot.h"
 
 namespace granrad {

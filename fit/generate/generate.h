@@ -7,6 +7,7 @@
 #include "dem/bed/bed.h"
 #include "fit/fitting/fit_correlation.h"
 #include "fit/generate/flow_snapshots.h"
+#include "fit/trace/snapshot_enclosure.h"
 #include "fit/trace/trace_snapshot.h"
 
 namespace granrad {

@@ -5,6 +5,7 @@
 
 #include "dem/base/program.h"
 #include "fit/fitting/fit_correlation.h"
+#include "fit/trace/snapshot_enclosure.h"
 #include "fit/trace/trace_snapshot.h"
 
 namespace granrad {

@@ -71,6 +71,37 @@ Problem measured_problem(const HitCounts& known, const StatedQuantity& quantity,
 
 }  // namespace
 
+std::vector<std::int64_t> rays_per_surface(const Enclosure& enclosure, const std::vector<double>& area,
+                                           double rays_per_particle) {
+  const std::size_t spheres = enclosure.sphere_count(), walls = enclosure.walls.size();
+  const std::size_t count = spheres > 0 ? spheres : walls;
+  const double total = std::accumulate(area.begin(), area.begin() + static_cast<std::ptrdiff_t>(count), 0.0);
+  std::vector<std::int64_t> rays(enclosure.surface_count(), 0);
+  for (std::size_t i = 0; i + 1 < rays.size(); ++i) {
+    if (!(area[i] > 0)) continue;
+    const double share = i < spheres || total == 0 ? 1 : area[i] * static_cast<double>(count) / total;
+    rays[i] = static_cast<std::int64_t>(std::ceil(std::max(1.0, rays_per_particle * share)));
+  }
+  spare_wide_walls(rays, spheres, rays_per_particle);
+  return rays;
+}
+
+void spare_wide_walls(std::vector<std::int64_t>& rays, std::size_t spheres, double rays_per_particle) {
+  constexpr double worth = 600, least_worth = 6,
+                   many_rays = 6e6;  // of a box: 100 times a particle's from each face
+  if (spheres == 0) return;
+  const auto first_wall = rays.begin() + static_cast<std::ptrdiff_t>(spheres);
+  const double from_spheres = std::accumulate(rays.begin(), first_wall, 0.0);
+  const double from_walls = std::accumulate(first_wall, rays.end(), 0.0);
+  const double most = std::max(
+      {from_spheres, least_worth * rays_per_particle, std::min(worth * rays_per_particle, many_rays)});
+  if (from_walls <= most) return;
+  for (auto wall = first_wall; wall != rays.end(); ++wall) {
+    const auto own = static_cast<double>(*wall);
+    *wall = std::llround(std::max(std::min(own, rays_per_particle), own * most / from_walls));
+  }
+}
+
 std::vector<std::int64_t> rays_for_error(const HitCounts& known, const StatedQuantity& quantity,
                                          double error) {
   const ParticleSums sums = particle_sums(known, quantity);

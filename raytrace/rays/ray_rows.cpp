@@ -4,18 +4,15 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 
 #include "dem/base/error.h"
-#include "dem/base/random.h"
 #include "dem/ranks/ranks.h"
 #include "raytrace/morton.h"
 #include "raytrace/rays/hit_tally.h"
 #include "raytrace/rays/ray_monitor.h"
 #include "raytrace/rays/ray_row.h"
-#include "raytrace/rays/variance_table.h"
 #include "raytrace/stated_error.h"
 
 namespace granrad {
@@ -222,164 +219,6 @@ class RowTracer {
   double size_m_ = 0;
 };
 
-/// Drops rare pairs at random so that the rest stands for them.
-class Thinning {
- public:
-  Thinning(std::uint64_t seed, std::int64_t unit) : seed_(seed ^ 0x7468696eull), unit_(unit) {}
-  std::int64_t unit() const { return unit_; }
-
-  std::int64_t kept(std::int32_t i, std::int32_t j, std::int64_t hits) const {
-    if (hits >= unit_) return hits;
-    const auto [low, high] = std::minmax(i, j);
-    const double draw =
-        random_uniform2(seed_, static_cast<std::uint64_t>(low), static_cast<std::uint64_t>(high))[0];
-    return draw * static_cast<double>(unit_) < static_cast<double>(hits) ? unit_ : 0;
-  }
-
- private:
-  std::uint64_t seed_;
-  std::int64_t unit_;
-};
-
-constexpr double bytes_per_pair = 100;     // counts, one-way estimates, and twice as many closed values
-constexpr double bytes_per_surface = 600;  // tree, tallies, rows
-
-/// Whether the pairs could fill the memory if every ray met another surface. Throws InputError when even a
-/// few for each surface would.
-bool may_outgrow(const std::vector<std::int64_t>& rays, std::size_t limit_bytes) {
-  constexpr double fewest_pairs = 16;
-  const double surfaces = static_cast<double>(rays.size()), limit = static_cast<double>(limit_bytes);
-  const double least = surfaces * (bytes_per_surface + fewest_pairs * bytes_per_pair);
-  if (limit < least)
-    throw InputError(advised(fmt::format("memory = {:.3g} MiB ({} surfaces need at least {:.3g} MiB)",
-                                         limit * 0x1p-20, rays.size(), least * 0x1p-20),
-                             "allow more"));
-  double pairs = 0;
-  for (const std::int64_t n : rays) pairs += std::min(static_cast<double>(n), surfaces);
-  return bytes_per_surface * surfaces + bytes_per_pair * pairs > limit;
-}
-
-/// Smallest power of two that keeps the pairs of all surfaces, judged by a sample of rows, within memory.
-std::int64_t thinning_unit(const std::vector<TracedRow>& sample, std::size_t surfaces,
-                           std::size_t limit_bytes) {
-  const double bytes = static_cast<double>(limit_bytes) - bytes_per_surface * static_cast<double>(surfaces);
-  const double pairs_per_row = std::max(1.0, bytes / bytes_per_pair / static_cast<double>(surfaces));
-  for (std::int64_t unit = 1;; unit *= 2) {
-    double kept = 0;
-    for (const TracedRow& row : sample)
-      for (const HitEntry& e : row.entries)
-        kept += std::min(1.0, static_cast<double>(e.hits) / static_cast<double>(unit));
-    if (kept <= pairs_per_row * static_cast<double>(sample.size()) || unit > std::int64_t{1} << 40)
-      return unit;
-  }
-}
-
-/// The variance of the particles' sums over the stated walls relative to binomial, from replicates; each
-/// counts as it does in the error of the merged sums.
-class SumVariance {
- public:
-  void add(const HitEntry& stated, std::int64_t launched, int replicates, double share) {
-    if (stated.hits == 0 || stated.hits == launched) return;
-    const double k = static_cast<double>(stated.hits), n = static_cast<double>(launched), r = replicates;
-    const double weight = share * share / (n * n);
-    found_ += weight * r / (r - 1) * (stated.replicate_square_sum - k * k / r);
-    binomial_ += weight * k * (1 - k / n);
-  }
-  double factor() const { return binomial_ > 0 ? found_ / binomial_ : 1; }
-
- private:
-  double found_ = 0, binomial_ = 0;
-};
-
-/// Gathers rows in the order of the surfaces.
-class CountBuilder {
- public:
-  CountBuilder(HitCounts& counts, Thinning thinning, int replicates, int of_walls, double stated_density)
-      : counts_(counts),
-        thinning_(thinning),
-        replicates_(replicates),
-        of_walls_(of_walls),
-        walls_(counts.area_m2.size() - static_cast<std::size_t>(counts.spheres)),
-        stated_density_(stated_density) {
-    constexpr int enough = 16;  // the error of a pair is then known to a fifth
-    constexpr std::size_t most_walls = 200;
-    counts_.pattern.row_begin.assign(1, 0);
-    counts_.thinning_unit = thinning_.unit();
-    if (of_walls_ >= enough && walls_ <= most_walls) counts_.wall_variance_factor.assign(walls_ * walls_, 1);
-  }
-
-  void append(const TracedRow& row) {
-    const auto i = static_cast<std::int32_t>(counts_.launched.size());
-    const double area = counts_.area_m2[static_cast<std::size_t>(i)];
-    if (replicates_ > 1) {
-      const double density = area > 0 ? static_cast<double>(row.launched) / area : 0;
-      if (i < counts_.spheres && density > 0)
-        sum_.add(row.stated, row.launched, replicates_, density / (density + stated_density_));
-      const int replicates = i < counts_.spheres ? replicates_ : of_walls_;
-      for (const HitEntry& e : row.entries) {
-        table_[pair_kind(counts_.spheres, i, e.surface)].add(e, row.launched, replicates);
-        if (i >= counts_.spheres && e.surface >= counts_.spheres) add_pair_of_walls(i, e, row.launched);
-      }
-    }
-    for (const HitEntry& e : row.entries) {
-      const std::int64_t hits = thinning_.kept(i, e.surface, e.hits);
-      if (hits == 0) continue;
-      counts_.pattern.column.push_back(e.surface);
-      counts_.hits.push_back(hits);
-    }
-    counts_.pattern.row_begin.push_back(static_cast<std::int64_t>(counts_.hits.size()));
-    counts_.launched.push_back(row.launched);
-    counts_.leaked += row.leaked;
-    if (!counts_.parts.empty())
-      for (const TracedRow::Part& part : row.parts)
-        counts_.parts[static_cast<std::size_t>(part.replicate)].push_back({i, part.surface, part.hits});
-    if (row.chords == 0) return;
-    const double n = static_cast<double>(row.chords), mean = row.chord_sum_m / n;
-    area_ += area;
-    chord_ += area * mean;
-    chord_variance_ += area * area * std::max(0.0, row.chord_square_sum_m2 / n - mean * mean) / n;
-  }
-
-  void finish() {
-    if (area_ > 0) {
-      counts_.mean_chord_m = chord_ / area_;
-      counts_.mean_chord_error_m = std::sqrt(chord_variance_) / area_;
-    }
-    counts_.sum_variance_factor = sum_.factor();
-    for (std::size_t kind = 0; kind < table_.size(); ++kind) {
-      auto& factor = counts_.variance_factor[kind];
-      factor = table_[kind].factors();
-      if (thinning_.unit() == 1) continue;
-      // A pair that stands for many rare ones: its count is `unit` or nothing, the same for both directions.
-      const auto bin =
-          static_cast<std::size_t>(std::bit_width(static_cast<std::uint64_t>(thinning_.unit()))) - 1;
-      if (factor.size() < bin + 2) factor.resize(bin + 2, factor.empty() ? 1 : factor.back());
-      factor[bin] = 2 * static_cast<double>(thinning_.unit());
-    }
-  }
-
- private:
-  void add_pair_of_walls(std::int32_t i, const HitEntry& e, std::int64_t launched) {
-    const double k = static_cast<double>(e.hits), r = of_walls_;
-    const double binomial = k * (1 - k / static_cast<double>(launched));
-    if (counts_.wall_variance_factor.empty() || !(binomial > 0)) return;
-    const auto a = static_cast<std::size_t>(i - counts_.spheres),
-               b = static_cast<std::size_t>(e.surface - counts_.spheres);
-    const double of_rounding = r / 12;  // however even the set is, counts are whole
-    counts_.wall_variance_factor[a * walls_ + b] =
-        std::max(r / (r - 1) * (e.replicate_square_sum - k * k / r), of_rounding) / binomial;
-  }
-
-  HitCounts& counts_;
-  Thinning thinning_;
-  int replicates_, of_walls_;
-  std::size_t walls_;  ///< surroundings among them
-  double stated_density_;
-  std::array<VarianceTable, 4> table_;
-  SumVariance sum_;
-  double area_ = 0, chord_ = 0, chord_variance_ = 0;
-};
-
 /// Rays per area of the walls whose error is stated.
 double stated_density(const std::vector<char>& stated, const std::vector<double>& area_m2,
                       const std::vector<std::int64_t>& rays) {
@@ -390,37 +229,6 @@ double stated_density(const std::vector<char>& stated, const std::vector<double>
 }
 
 }  // namespace
-
-std::vector<std::int64_t> rays_per_surface(const Enclosure& enclosure, const std::vector<double>& area,
-                                           double rays_per_particle) {
-  const std::size_t spheres = enclosure.sphere_count(), walls = enclosure.walls.size();
-  const std::size_t count = spheres > 0 ? spheres : walls;
-  const double total = std::accumulate(area.begin(), area.begin() + static_cast<std::ptrdiff_t>(count), 0.0);
-  std::vector<std::int64_t> rays(enclosure.surface_count(), 0);
-  for (std::size_t i = 0; i + 1 < rays.size(); ++i) {
-    if (!(area[i] > 0)) continue;
-    const double share = i < spheres || total == 0 ? 1 : area[i] * static_cast<double>(count) / total;
-    rays[i] = static_cast<std::int64_t>(std::ceil(std::max(1.0, rays_per_particle * share)));
-  }
-  spare_wide_walls(rays, spheres, rays_per_particle);
-  return rays;
-}
-
-void spare_wide_walls(std::vector<std::int64_t>& rays, std::size_t spheres, double rays_per_particle) {
-  constexpr double worth = 600, least_worth = 6,
-                   many_rays = 6e6;  // of a box: 100 times a particle's from each face
-  if (spheres == 0) return;
-  const auto first_wall = rays.begin() + static_cast<std::ptrdiff_t>(spheres);
-  const double from_spheres = std::accumulate(rays.begin(), first_wall, 0.0);
-  const double from_walls = std::accumulate(first_wall, rays.end(), 0.0);
-  const double most = std::max(
-      {from_spheres, least_worth * rays_per_particle, std::min(worth * rays_per_particle, many_rays)});
-  if (from_walls <= most) return;
-  for (auto wall = first_wall; wall != rays.end(); ++wall) {
-    const auto own = static_cast<double>(*wall);
-    *wall = std::llround(std::max(std::min(own, rays_per_particle), own * most / from_walls));
-  }
-}
 
 HitCounts trace_rows(const Enclosure& enclosure, const std::vector<double>& emitting_area_m2,
                      const std::vector<std::int64_t>& rays, const TraceOptions& options,
@@ -435,7 +243,7 @@ HitCounts trace_rows(const Enclosure& enclosure, const std::vector<double>& emit
   RowTracer tracer(enclosure, rays, options, follow);
 
   std::int64_t unit = 1;
-  if (may_outgrow(rays, options.memory_limit_bytes)) {
+  if (pairs_may_outgrow(rays, options.memory_limit_bytes)) {
     std::vector<std::int32_t> some;
     const std::size_t count = std::min(sample_size, surfaces - 1);
     for (std::size_t k = 0; k < count; ++k)

@@ -24,4 +24,21 @@ class VarianceTable {
   std::array<Bin, 48> bins_{};
 };
 
+/// The variance of the particles' sums over the stated walls relative to binomial, from replicates; each
+/// counts as it does in the error of the merged sums.
+class SumVariance {
+ public:
+  void add(const HitEntry& stated, std::int64_t launched, int replicates, double share) {
+    if (stated.hits == 0 || stated.hits == launched) return;
+    const double k = static_cast<double>(stated.hits), n = static_cast<double>(launched), r = replicates;
+    const double weight = share * share / (n * n);
+    found_ += weight * r / (r - 1) * (stated.replicate_square_sum - k * k / r);
+    binomial_ += weight * k * (1 - k / n);
+  }
+  double factor() const { return binomial_ > 0 ? found_ / binomial_ : 1; }
+
+ private:
+  double found_ = 0, binomial_ = 0;
+};
+
 }  // namespace granrad

@@ -1,4 +1,4 @@
-#include "coupling/simulation/csv_log.h"
+#include "dem/base/files/csv_log.h"
 
 #include <fmt/core.h>
 #include <unistd.h>
