@@ -27,6 +27,12 @@ Case read(const ConductivityCommand& command) {
     throw InputError(advised(fmt::format("{}: is no scene", command.bed.string()),
                              "name the scene whose walls and materials it has by --scene FILE.toml"));
   Case c = read_case(is_scene ? command.bed : command.scene, command.overrides, command.removed);
+  for (const Wall& wall : c.flow.walls)
+    if (!wall.course.empty())
+      throw InputError(
+          advised(fmt::format("wall {} changes its temperature (a conductivity is that of a steady state)",
+                              wall.name),
+                  "give it one temperature_K"));
   if (!is_scene) {
     c.flow.particle_file = command.bed;
     c.flow.feed = {};

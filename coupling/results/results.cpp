@@ -68,6 +68,8 @@ std::vector<WallResult> wall_results(const std::vector<WallRow>& rows, double fr
     if (row.time_s <= from_s * (1 + 1e-9) && from_s > 0) continue;
     auto& of = heats[row.wall];
     if (of[0].empty()) results.push_back({row.wall, row.area_m2, row.temperature_K, {}, {}, {}, {}, {}});
+    for (WallResult& wall : results)
+      if (wall.wall == row.wall && wall.temperature_K != row.temperature_K) wall.temperature_K = undefined;
     of[0].push_back(row.Q_ss_W);
     of[1].push_back(row.Q_sfs_W);
     of[2].push_back(row.Q_rad_W);

@@ -157,6 +157,10 @@ bool Simulation::resume(const Snapshot& frame) {
 
 void Simulation::advance() {
   ++tick_;
+  const double from_s = plan_.time_s(tick_ - 1), to_s = plan_.time_s(tick_);
+  const auto hold_walls = [&](double until_s) {
+    hold_temperatures(bed_.walls, case_.flow.walls, from_s, until_s);
+  };
   {
     Stopwatch watch(seconds_.flow);
     flow_.advance(bed_, plan_, tick_);
@@ -169,11 +173,15 @@ void Simulation::advance() {
   if (plan_.radiation_at(tick_)) {
     Stopwatch watch(seconds_.radiation);
     require_same_bed_on_ranks(bed_);
-    heat_.radiate(bed_, static_cast<double>(plan_.ticks_per_radiation) * plan_.tick_s);
+    const double interval_s = static_cast<double>(plan_.ticks_per_radiation) * plan_.tick_s;
+    hold_walls(from_s + interval_s);
+    heat_.radiate(bed_, interval_s);
   }
   Stopwatch watch(seconds_.conduction);
   const ThreadsOfFlow threads(flow_);
+  hold_walls(to_s);
   heat_.advance(bed_, plan_.heat_step_s(tick_));
+  hold_temperatures(bed_.walls, case_.flow.walls, to_s, to_s);
 }
 
 void Simulation::keep(Snapshot& into) const {

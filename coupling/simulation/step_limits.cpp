@@ -49,13 +49,12 @@ double smallest_radius_m(const Scene& scene, const Bed& bed) {
 /// The bed, or one particle of the scene where the bed is still empty.
 double radiation_limit_s(const Scene& scene, const Bed& bed) {
   // what is to come counts too: the feed's particles may be hotter than the bed
-  if (bed.size() > 0)
-    return explicit_radiation_fraction *
-           radiation_time_constant_s(
-               bed, scene.feed.kind == FeedSettings::Kind::none ? 0 : scene.particle_temperature_K);
+  double hottest = scene.feed.kind == FeedSettings::Kind::none ? 0 : scene.particle_temperature_K;
+  for (const Wall& wall : scene.walls) hottest = std::max(hottest, wall.course.empty() ? 0 : hottest_K(wall));
+  if (bed.size() > 0) return explicit_radiation_fraction * radiation_time_constant_s(bed, hottest);
   Bed lone = bed;
   lone.add(scene.box.min, {}, scene.particle_diameter_m / 2, scene.particle_temperature_K);
-  return explicit_radiation_fraction * radiation_time_constant_s(lone);
+  return explicit_radiation_fraction * radiation_time_constant_s(lone, hottest);
 }
 
 double largest_speed_m_s(const Scene& scene, const Bed& bed) {

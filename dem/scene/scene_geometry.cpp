@@ -63,7 +63,7 @@ class GeometryReader {
       if (has_walls && !scene_.periodic[face / 2]) {
         Wall wall = walls[face];
         wall.contact = !(scene_.feed.kind == FeedSettings::Kind::plug && face / 2 == 2);
-        read_properties(table, wall);
+        read_wall_properties(table, wall, scene_, roles_required_);
         refuse_moving_across(table, wall);
         scene_.walls.push_back(std::move(wall));
         line_.push_back(0);
@@ -73,54 +73,6 @@ class GeometryReader {
       }
     }
     scene_.box_wall_count = scene_.walls.size();
-  }
-
-  /// `inherits`: what the table does not say stays as it is.
-  void read_properties(TomlTable& table, Wall& wall, bool inherits = false) {
-    if (roles_required_ && !inherits && !table.has("role"))
-      table.problem("role",
-                    "missing: radiation is on, so every wall must choose \"isothermal\", \"adiabatic\", "
-                    "\"open\" or \"excluded\"");
-    const WallRole before = wall.role;
-    wall.role = table.choice(
-        {"role",
-         "isothermal: held at temperature_K; adiabatic: re-radiates what it receives; open: black surroundings; excluded: left out of the exchange",
-         "required when radiation is on, else adiabatic"},
-        wall_roles, inherits ? before : WallRole::adiabatic);
-    read_temperature(table, wall, inherits && has_temperature(before));
-    if (wall.role == WallRole::open) {
-      wall.emissivity = 1;
-      if (table.has("emissivity"))
-        table.problem("emissivity",
-                      "an open wall is the black surroundings: remove it, or choose role = \"isothermal\"");
-    } else {
-      wall.emissivity = table.number(
-          {"emissivity", "of the wall, grey and diffuse", "emissivity of the material"},
-          {.min = 0, .max = 1, .why = "grey diffuse surface"},
-          inherits && before != WallRole::open ? wall.emissivity : scene_.materials[0].emissivity);
-    }
-    wall.contact =
-        table.boolean({"contact", "particles touch it", "true, but for the ends of a plug"}, wall.contact);
-    wall.velocity_m_s = table.vec3({"velocity_m_s", "speed of the surface, which drags particles along it"},
-                                   {.unit = "m/s"}, wall.velocity_m_s);
-    wall.opens_at_s = table.number({"opens_at_s", "time at which the wall is taken away", "never"},
-                                   {.unit = "s", .min = 0}, wall.opens_at_s);
-  }
-
-  static bool has_temperature(WallRole role) {
-    return role == WallRole::isothermal || role == WallRole::open;
-  }
-
-  static void read_temperature(TomlTable& table, Wall& wall, bool inherits) {
-    const Key key{"temperature_K", "temperature of an isothermal or open wall"};
-    const NumberRule rule{.unit = "K", .min = 0, .min_exclusive = true};
-    if (has_temperature(wall.role))
-      wall.temperature_K = inherits ? table.number(key, rule, wall.temperature_K) : table.number(key, rule);
-    else if (table.has("temperature_K"))
-      table.problem("temperature_K",
-                    fmt::format("an {} wall has no temperature of its own: remove it, or choose "
-                                "role = \"isothermal\"",
-                                to_string(wall.role)));
   }
 
   Wall polygon(TomlTable& table) {
@@ -189,7 +141,7 @@ class GeometryReader {
         mesh && !walls.empty() && std::all_of(walls.begin(), walls.end(), [&](const Wall& wall) {
           return solid_table(table, *mesh, wall).has("role");
         });
-    read_properties(table, properties, all_chosen);
+    read_wall_properties(table, properties, scene_, roles_required_, all_chosen);
     const bool two_sided =
         table.boolean({"two_sided", "both sides radiate (a thin plate in the bed)"}, false);
     if (mesh && walls.empty()) read_unmatched_solids(table);
@@ -201,7 +153,7 @@ class GeometryReader {
       wall = std::move(shaped);
       if (mesh)
         if (TomlTable solid = solid_table(table, *mesh, wall); solid.present())
-          read_properties(solid, wall, true);
+          read_wall_properties(solid, wall, scene_, roles_required_, true);
       const auto same = [&](const Wall& other) { return other.name == wall.name; };
       if (std::any_of(scene_.walls.begin(), scene_.walls.end(), same))
         table.problem("name", fmt::format("another wall is called {}; names must differ", wall.name));
@@ -221,7 +173,7 @@ class GeometryReader {
     for (const auto& name : names) {
       Wall unread;
       TomlTable solid = solids.table(solid_key(name));
-      read_properties(solid, unread, true);
+      read_wall_properties(solid, unread, scene_, roles_required_, true);
     }
   }
 

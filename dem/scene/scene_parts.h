@@ -12,6 +12,11 @@ void read_removals(TomlTable root, Scene& scene);
 /// `roles_required`: every wall must choose its role because radiation is on.
 void read_geometry(TomlTable root, Scene& scene, bool roles_required);
 
+/// What a wall is but its shape. `inherits`: what the table does not say stays as it is; else `role_required`.
+/// Precondition: materials are read.
+void read_wall_properties(TomlTable& table, Wall& wall, const Scene& scene, bool role_required,
+                          bool inherits = false);
+
 /// kind of [feed], which other parts depend on.
 FeedSettings::Kind read_feed_kind(TomlTable feed);
 

@@ -286,6 +286,10 @@ def add_rows_that_are_alike():
             low = [("[polygon]", "vertices_m = [[0, 0, 0.00002], [0.004, 0, 0.00002], [0.004, 0.005, 0.00002], [0, 0.005, 0.00002]]"), ("[mesh]", 'file = "floor.stl"'),
                    ("dem", 'engine = "native"\nstep_s = 2e-5'), ("scene", "gravity_m_s2 = [0, 0, -9.81]\nend_time_s = 0.02"), ("radiation", 'source = "none"')]
             KEYS[f"{kind}.{name}"] = ("frozen", low[:1] + low[2:] if kind == "polygon[]" else low[1:], [(table, f"{name} = {value}")])
+    for kind, table in (("walls.*", "walls.y_min"), ("polygon[]", "[polygon]"), ("mesh[]", "[mesh]"), ("mesh[].solid.NAME", "mesh.solid.left")):
+        warming = [(table, "temperature_K = \ntimes_s = [0, 0.1]\ntemperatures_K = [900, 1000]")]
+        for name, value in (("times_s", "[0, 0.01]"), ("temperatures_K", "[900, 1500]")):
+            KEYS[f"{kind}.{name}"] = ("frozen", warming, [(table, f"{name} = {value}")])
     for which, table in (("reference", "validate.reference"), ("compare[]", "[validate.compare]")):
         for name, needed, change in (("source", "", 'source = "embree"'), ("rays", "", "rays = 200"), ("seed", "", "seed = 7"),
                                      ("order", 'source = "lines"\nrays = 500', "order = 1"), ("closure", 'source = "lines"\nrays = 500', 'closure = "row_sum"'),
