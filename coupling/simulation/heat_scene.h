@@ -37,7 +37,7 @@ struct RadiationSettings {
   Closure closure = Closure::reciprocal;
   int order = 0;  ///< lines only: of the spherical harmonics of each sphere's radiosity; 0: one radiosity
   bool patches =
-      true;  ///< embree, lines, shading: walls that reflect are cut into patches, one radiosity each
+      true;  ///< embree, lines, shading, traced wall rows: walls that reflect are cut into patches, one radiosity each
   std::uint64_t seed = 1;
 };
 

@@ -138,7 +138,7 @@ RadiationSettings read_source(TomlTable table, const Scene& scene, RadiationKind
   settings.patches =
       table.choice(
           {"wall_patches",
-           "of adiabatic and grey walls (polygons and flat faces of meshes), with embree, lines and shading: auto cuts them into patches with a radiosity each, whole gives each wall one"},
+           "of adiabatic and grey walls (polygons and flat faces of meshes), with embree, lines, shading and traced wall rows: auto cuts them into patches with a radiosity each, whole gives each wall one"},
           {"auto", "whole"}, "auto") == "auto";
   settings.seed = static_cast<std::uint64_t>(table.integer({"seed", "of the rays"}, 0, 1LL << 62, 1));
 
@@ -150,10 +150,11 @@ RadiationSettings read_source(TomlTable table, const Scene& scene, RadiationKind
     table.problem("wall_rows",
                   fmt::format("is not used by source = {}; leave it out or set source = \"correlation\"",
                               to_string(settings.kind)));
-  if (table.has("wall_patches") &&
-      (paths || settings.kind == RadiationKind::none || settings.kind == RadiationKind::correlation))
+  const bool table_walls = settings.kind == RadiationKind::correlation && !settings.traced_walls;
+  if (table.has("wall_patches") && (paths || settings.kind == RadiationKind::none || table_walls))
     table.problem("wall_patches",
-                  fmt::format("is not used by source = {}; leave it out", to_string(settings.kind)));
+                  fmt::format("is not used by source = {}{}; leave it out", to_string(settings.kind),
+                              table_walls ? " without wall_rows = \"traced\"" : ""));
   if (table.has("wall_patches") && settings.closure == Closure::row_sum)
     table.problem("wall_patches", "is not used with closure = \"row_sum\", the paper's; leave it out");
   if (settings.order > 0) check_order(table, settings.kind, scene);

@@ -110,6 +110,15 @@ CorrelationUse correlation_use(const RadiationSettings& settings, int threads) {
   return use;
 }
 
+RadiositySource::PatchEstimate correlation_estimate(const RadiationSettings& settings, int threads) {
+  return [table = read_correlation(settings.table), use = correlation_use(settings, threads)](
+             const Enclosure& enclosure, const WallPatches& patches, std::uint64_t update) {
+    CorrelationUse of_patches = use;
+    of_patches.patches = &patches;
+    return correlation_exchange_areas(table, enclosure, of_patches, update);
+  };
+}
+
 }  // namespace
 
 std::unique_ptr<ExchangeSource> make_radiation_source(const RadiationSettings& settings, const Scene& scene,
@@ -133,6 +142,7 @@ std::unique_ptr<ExchangeSource> make_radiation_source(const RadiationSettings& s
     case RadiationKind::shading:
       return radiosity_source(settings, shading_estimate(settings, threads));
     case RadiationKind::correlation:
+      if (settings.traced_walls) return radiosity_source(settings, correlation_estimate(settings, threads));
       return std::make_unique<RadiositySource>(
           RadiositySource::Estimate(
               correlation_exchange(read_correlation(settings.table), correlation_use(settings, threads))),

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <optional>
 
 #include "dem/base/constants.h"
 #include "dem/base/error.h"
@@ -13,6 +14,7 @@
 #include "dem/bed/wall_shape.h"
 #include "fit/correlation/wall_exchange.h"
 #include "raytrace/exact.h"
+#include "raytrace/rays/patch_rays.h"
 
 namespace granrad {
 
@@ -27,6 +29,19 @@ struct SphereRow {
     value.push_back(x);
   }
   double sum() const { return std::accumulate(value.begin(), value.end(), 0.0); }
+  /// Puts columns in order, equal ones into one.
+  void sort() {
+    std::vector<std::size_t> order(column.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return column[a] < column[b]; });
+    SphereRow sorted;
+    for (const std::size_t k : order)
+      if (!sorted.column.empty() && sorted.column.back() == column[k])
+        sorted.value.back() += value[k];
+      else
+        sorted.add(static_cast<std::size_t>(column[k]), value[k]);
+    *this = std::move(sorted);
+  }
 };
 
 void refuse_what_a_table_cannot_serve(const CorrelationTable& table, const Enclosure& enclosure) {
@@ -214,15 +229,37 @@ void add_wall_pairs(std::size_t first_wall, const WallExchange& walls, std::vect
         rows[first_wall + w].add(first_wall + v, x);
 }
 
+/// Rows of walls or their patches by their own rays, each pair of them from both ends: rays in proportion to area, so that
+/// both ends know as much. Returns what fraction of the view of each leaves.
+std::vector<double> add_traced_walls(const HitCounts& counts, std::size_t spheres,
+                                     std::vector<SphereRow>& rows) {
+  const std::size_t open = counts.area_m2.size() - 1;
+  std::vector<double> opening(open - spheres, 0);
+  for (std::size_t w = spheres; w < open; ++w)
+    for (auto k = counts.pattern.row_begin[w]; k < counts.pattern.row_begin[w + 1]; ++k) {
+      const auto j = static_cast<std::size_t>(counts.pattern.column[k]);
+      const double seen = static_cast<double>(counts.hits[k]) / static_cast<double>(counts.launched[w]);
+      const double x = counts.area_m2[w] * seen * (j < spheres || j == w ? 1 : 0.5);
+      if (j == open) {
+        opening[w - spheres] = seen;
+        continue;
+      }
+      rows[w].add(j, x);
+      if (j != w) rows[j].add(w, x);
+    }
+  for (std::size_t w = spheres; w < open; ++w) rows[w].sort();
+  return opening;
+}
+
 /// Surfaces that see an opening give it what is missing to their area.
 void add_surroundings(const Enclosure& enclosure, const std::vector<double>& area,
-                      const std::vector<std::vector<double>>& exact, const WallExchange& walls,
+                      const std::vector<std::vector<double>>& exact, const std::vector<double>& openings,
                       std::vector<SphereRow>& rows) {
   const std::size_t n = enclosure.sphere_count(), open = enclosure.open_surface();
   for (std::size_t i = 0; i < open; ++i) {
     double opening = 1;
     if (i >= n)
-      opening = walls.opening[i - n];
+      opening = openings[i - n];
     else
       for (const auto& column : exact) opening -= column[i];
     const double missing = area[i] - rows[i].sum();
@@ -269,15 +306,13 @@ void require_rays_for_spheres(const Enclosure& enclosure, double rays) {
         "take the walls from the table (radiation.wall_rows = \"table\"), or source = paths or embree"));
 }
 
-WallExchange walls_of(const Enclosure& enclosure, const CorrelationUse& use, const SolidFractionField& field,
-                      std::uint64_t update) {
-  if (use.wall_rows == WallRows::table)
-    return wall_exchange(enclosure, field,
-                         enclosure.sphere_count() == 0 ? 1 : mean_diameter_m(enclosure.radius_m));
-  const double spheres = std::max<double>(1000, static_cast<double>(enclosure.sphere_count()));
-  const double rays = use.wall_rays * spheres;
+/// Adds the rows of the walls, and what spheres exchange with them, by rays. Returns their openings.
+std::vector<double> trace_walls(const PatchRays& walls, const Enclosure& enclosure, const CorrelationUse& use,
+                                std::uint64_t update, std::vector<SphereRow>& rows) {
+  const double rays = use.wall_rays * std::max<double>(1000, static_cast<double>(enclosure.sphere_count()));
   require_rays_for_spheres(enclosure, rays);
-  return traced_wall_exchange(enclosure, rays, use.seed + update, use.threads);
+  return add_traced_walls(walls.trace_walls(rays, use.seed + update, use.threads), enclosure.sphere_count(),
+                          rows);
 }
 
 }  // namespace
@@ -287,26 +322,33 @@ ExchangeAreas correlation_exchange_areas(const CorrelationTable& table, const En
                                          CorrelationUsed* used) {
   refuse_what_a_table_cannot_serve(table, enclosure);
   const std::size_t n = enclosure.sphere_count();
-  const auto area = surface_areas(enclosure);
+  const bool traced = use.wall_rows == WallRows::traced;
+  std::optional<PatchRays> walls;
+  if (traced) walls.emplace(enclosure, use.patches, use.threads);
+  const Enclosure& surfaces = walls ? walls->surfaces() : enclosure;
+  const auto area = surface_areas(surfaces);
   const double whole = n == 0 ? 0 : use.solid_fraction > 0 ? use.solid_fraction : solid_fraction(enclosure);
   const SolidFractionField field =
       use.uniform ? SolidFractionField(whole) : SolidFractionField(enclosure, whole);
   require_local_solid_fractions(table, field);
   const auto exact = unobstructed_factors(enclosure);
-  const auto walls = walls_of(enclosure, use, field, update);
   std::vector<SphereRow> rows;
   if (n > 0) {
     const double farthest = field.uniform() ? farthest_that_counts(table, whole) : table.pp_cutoff;
     const LocalCorrelation correlation(table, field, farthest);
     rows = sphere_rows(correlation, field, enclosure, area);
-    rows.resize(enclosure.surface_count());
-    add_walls(walls.sphere.empty() ? table_walls(correlation, field, enclosure, area, exact) : walls.sphere,
-              n, rows);
+    rows.resize(surfaces.surface_count());
+    if (!traced) add_walls(table_walls(correlation, field, enclosure, area, exact), n, rows);
     if (used) *used = {whole, field.deviation(), !field.uniform(), farthest};
   }
-  rows.resize(enclosure.surface_count());
-  add_wall_pairs(n, walls, rows);
-  add_surroundings(enclosure, area, exact, walls, rows);
+  rows.resize(surfaces.surface_count());
+  if (traced) {
+    add_surroundings(surfaces, area, exact, trace_walls(*walls, enclosure, use, update, rows), rows);
+  } else {
+    const auto between = wall_exchange(enclosure, field, n == 0 ? 1 : mean_diameter_m(enclosure.radius_m));
+    add_wall_pairs(n, between, rows);
+    add_surroundings(enclosure, area, exact, between.opening, rows);
+  }
   return flattened(rows, area);
 }
 

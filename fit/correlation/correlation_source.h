@@ -16,11 +16,15 @@ enum class WallRows {
   traced,  ///< rays from every wall, anew for each enclosure: only pairs of particles come from the table
 };
 
+class WallPatches;
+
 struct CorrelationUse {
   double solid_fraction = 0;  ///< of the whole; 0: measured from each enclosure
   bool uniform = false;       ///< take the bed as uniform whatever its local solid fractions
   WallRows wall_rows = WallRows::table;
   double wall_rays = 300;  ///< traced: all walls together, per sphere of the enclosure
+  const WallPatches* patches =
+      nullptr;  ///< traced: of the walls; surfaces are then those of patches->applied_to(enclosure)
   std::uint64_t seed = 1;
   int threads = 0;
 };
@@ -48,7 +52,7 @@ ExchangeAreas correlation_exchange_areas(const CorrelationTable& table, const En
                                          const CorrelationUse& use, std::uint64_t update = 0,
                                          CorrelationUsed* used = nullptr);
 
-/// The same as a function for a radiosity source.
+/// The same as a function for a radiosity source of whole walls.
 std::function<ExchangeAreas(const Enclosure&, std::uint64_t update)> correlation_exchange(
     CorrelationTable table, CorrelationUse use = {});
 

@@ -5,10 +5,8 @@
 
 #include "dem/base/constants.h"
 #include "dem/bed/wall_shape.h"
-#include "raytrace/embree/embree_tracer.h"
 #include "raytrace/facets.h"
 #include "raytrace/rays/emission.h"
-#include "raytrace/rays/ray_rows.h"
 
 namespace granrad {
 
@@ -93,50 +91,6 @@ WallExchange wall_exchange(const Enclosure& enclosure, const SolidFractionField&
     for (std::size_t w = 0; w < walls; ++w)
       result.value[v * walls + w] = (arrived[v * walls + w] + arrived[w * walls + v]) / rays_per_wall /
                                     (1 / area(empty.walls[v]) + 1 / area(empty.walls[w]));
-  return result;
-}
-
-WallExchange traced_wall_exchange(const Enclosure& enclosure, double rays, std::uint64_t seed, int threads) {
-  const std::size_t n = enclosure.sphere_count(), walls = enclosure.walls.size();
-  const auto area_m2 = surface_areas(enclosure);
-  double emitting_m2 = 0;
-  for (std::size_t w = 0; w < walls; ++w) emitting_m2 += area_m2[n + w];
-  constexpr double least_rays = 1000;
-  std::vector<std::int64_t> launched(enclosure.surface_count(), 0);
-  for (std::size_t w = 0; w < walls; ++w)
-    launched[n + w] = std::llround(std::max(least_rays, rays * area_m2[n + w] / emitting_m2));
-  TraceOptions options;
-  options.seed = seed;
-  options.threads = threads;
-  const EmbreeTracer tracer(enclosure, threads);
-  const HitCounts counts = trace_rows(enclosure, area_m2, launched, options, [&](const EmittedRay& ray) {
-    const End end = tracer.first_end(ray.start.origin_m, ray.start.direction, ray.surface);
-    return RayEnd{end.surface, end.distance_m};
-  });
-  WallExchange result;
-  result.walls = walls;
-  result.value.assign(walls * walls, 0);
-  result.opening.assign(walls, 0);
-  result.sphere.assign(walls, std::vector<double>(n, 0));
-  for (std::size_t w = 0; w < walls; ++w) {
-    const std::size_t i = n + w;
-    for (auto k = counts.pattern.row_begin[i]; k < counts.pattern.row_begin[i + 1]; ++k) {
-      const auto j = static_cast<std::size_t>(counts.pattern.column[k]);
-      const double x =
-          area_m2[i] * static_cast<double>(counts.hits[k]) / static_cast<double>(counts.launched[i]);
-      if (j < n)
-        result.sphere[w][j] = x;
-      else if (j < n + walls)
-        result.value[w * walls + j - n] = x;
-      else
-        result.opening[w] = x / area_m2[i];
-    }
-  }
-  for (std::size_t v = 0; v < walls; ++v)  // rays in proportion to area: both ends know as much
-    for (std::size_t w = 0; w < v; ++w) {
-      const double x = 0.5 * (result.value[v * walls + w] + result.value[w * walls + v]);
-      result.value[v * walls + w] = result.value[w * walls + v] = x;
-    }
   return result;
 }
 

@@ -1,5 +1,4 @@
 #pragma once
-#include <cstdint>
 #include <vector>
 
 #include "fit/correlation/solid_fraction_field.h"
@@ -12,8 +11,6 @@ struct WallExchange {
   std::size_t walls = 0;
   std::vector<double> value;    ///< [walls * walls] X_vw = A_v F_vw through the bed, m^2, symmetric
   std::vector<double> opening;  ///< [walls] fraction of the view that meets no wall when the box is empty
-  /// [walls][spheres] X of each sphere, m^2; empty unless traced.
-  std::vector<std::vector<double>> sphere;
 };
 
 /// Extinction coefficient of a bed of equal spheres, 1/m: 3/2 phi / (d (1 - phi)). Its inverse is the mean
@@ -30,9 +27,5 @@ double extinction_1_m(double solid_fraction, double diameter_m);
 /// one extinction coefficient does not know; what is missing is spread by the closure. Trace the wall rows
 /// where that matters.
 WallExchange wall_exchange(const Enclosure& enclosure, const SolidFractionField& field, double diameter_m);
-
-/// The same, and what each sphere exchanges with each wall, by first hits of rays from the walls alone
-/// (Embree): `rays` in all, in proportion to area. One-way: the spheres send none.
-WallExchange traced_wall_exchange(const Enclosure& enclosure, double rays, std::uint64_t seed, int threads);
 
 }  // namespace granrad

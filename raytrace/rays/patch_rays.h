@@ -18,6 +18,8 @@ class PatchRays {
   const Enclosure& surfaces() const { return cut_ ? *cut_ : whole_; }
   /// Where a ray of one of those surfaces ends.
   RayEnd follow(const EmittedRay& ray) const;
+  /// Rows of the walls alone: `rays` in all, in proportion to area, at least 1000 of a whole wall and 64 of a patch.
+  HitCounts trace_walls(double rays, std::uint64_t seed, int threads) const;
 
  private:
   const Enclosure& whole_;

@@ -49,7 +49,7 @@ double place_across(double offset, double u) {
   const double half = offset / 2, side = u < 0.5 ? -1 : 1;
   const double beyond = segment_area(half) * (1 - std::abs(2 * u - 1));
   double low = half, high = 0.5;
-  for (int k = 0; k < 40; ++k) {
+  for (int k = 0; k < 26; ++k) {  // single precision
     const double middle = 0.5 * (low + high);
     (segment_area(middle) > beyond ? low : high) = middle;
   }

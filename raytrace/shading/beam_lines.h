@@ -18,7 +18,7 @@ class BeamLines {
  public:
   static constexpr std::size_t most = 1024;
   static constexpr double near = 6;
-  static constexpr int bins_per_diameter = 12;
+  static constexpr int bins_per_diameter = 24;
 
   /// Lines of one distance. Through the plane of the first centre at `point`, which is perpendicular to `direction`; the
   /// second centre, s away, lies beside a line at s direction_z.

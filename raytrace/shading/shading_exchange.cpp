@@ -23,24 +23,6 @@ double square(double x) {
   return x * x;
 }
 
-/// Counts of rays that the walls send.
-HitCounts trace_walls(const PatchRays& from, const ShadingOptions& options) {
-  const Enclosure& enclosure = from.surfaces();
-  const auto area = surface_areas(enclosure);
-  const std::size_t spheres = enclosure.sphere_count();
-  const double walls = std::accumulate(area.begin() + static_cast<std::ptrdiff_t>(spheres), area.end(), 0.0);
-  constexpr double least_rays = 1000, least_of_patch = 64;
-  const double least = options.patches ? least_of_patch : least_rays;
-  const double all = options.rays_per_particle * static_cast<double>(std::max<std::size_t>(1, spheres));
-  std::vector<std::int64_t> rays(enclosure.surface_count(), 0);
-  for (std::size_t s = spheres; s < enclosure.open_surface(); ++s)
-    rays[s] = std::llround(std::max(least, all * area[s] / walls));
-  TraceOptions trace;
-  trace.seed = options.seed;
-  trace.threads = options.threads;
-  return trace_rows(enclosure, area, rays, trace, [&](const EmittedRay& ray) { return from.follow(ray); });
-}
-
 class Assembly {
  public:
   explicit Assembly(std::vector<double> area) : rows_(area.size()), area_(std::move(area)) {}
@@ -240,7 +222,10 @@ ExchangeAreas shading_exchange_areas(const Enclosure& enclosure, const ShadingOp
     const double full = 4 * pi * r_i * r_j * unobstructed_pair(pair.distance_m / (r_i + r_j));
     assembly.add(pair.i, pair.j, full * pair.open_share, full * full * pair.variance);
   }
-  const WallRows rows(enclosure, walls.surfaces(), options.patches, trace_walls(walls, options));
+  const double rays =
+      options.rays_per_particle * static_cast<double>(std::max<std::size_t>(1, enclosure.sphere_count()));
+  const WallRows rows(enclosure, walls.surfaces(), options.patches,
+                      walls.trace_walls(rays, options.seed, options.threads));
   const bool anything_open = rows.add(spheres_to_walls(enclosure, room, shading, options), assembly);
   if (anything_open)
     for (std::size_t i = 0; i < enclosure.sphere_count(); ++i)

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "dem/base/constants.h"
 #include "dem/ranks/ranks.h"
 #include "raytrace/shading/beam_ends.h"
 #include "raytrace/shading/beam_lines.h"
@@ -68,7 +69,11 @@ class Shading {
     const double s = std::max(1.0, near.distance[other]);
     const Vec3 axis = near.place[other] * (1 / near.distance[other]);
     const Vec3 helper = std::abs(axis.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    const Vec3 u = normalized(cross(axis, helper));
+    const Vec3 across = normalized(cross(axis, helper));
+    // turned from pair to pair, so that the errors of equal ones (stacked spheres) are not all the same
+    const double turn =
+        2 * pi * std::fmod(0.618033988749895 * i + 0.754877666246693 * near.number[other], 1.0);
+    const Vec3 u = std::cos(turn) * across + std::sin(turn) * cross(axis, across);
     const Beam beam{beams().at(s), {u, cross(axis, u), axis}, enclosure_.centre_m[i], diameter_m(i), s};
     BlockedLines blocked(beam.lines.count());
     block(beam, near, other, blocked);

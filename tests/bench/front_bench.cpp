@@ -168,7 +168,7 @@ int main(int argc, char** argv) {
   page.paragraph(
       "Spheres of 0.8 mm at 300 K in a channel of 10 x 4 x 50 mm, y walls at 1000 K, the others re-radiating. Reference: "
       "traced paths, whose noise is taken out. Sources by view factors take one radiosity for each sphere and each patch of "
-      "an adiabatic wall, tables one for each wall: that is their bias with many rays. The paper's scheme: printed cubics, rows normalised, four walls dropped, "
+      "an adiabatic wall, tables without traced walls one for each wall: that is their bias with many rays. The paper's scheme: printed cubics, rows normalised, four walls dropped, "
       "dense LU where surfaces are grey. T(5 s): of the rise. h: of a plug flow, 0.1 to 0.3 s.");
   const double begin = cpu_s();
   std::string verdicts;

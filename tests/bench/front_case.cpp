@@ -234,7 +234,8 @@ FrontCase::Point FrontCase::measure(const Contender& contender) const {
   const auto kind = contender.settings.kind;
   const bool by_view_factors =
       kind != RadiationKind::paths && contender.settings.order == 0 && !contender.paper;
-  const Rms geometry = rms_difference(draws, geometry_[kind != RadiationKind::correlation], n);
+  const bool patches = kind != RadiationKind::correlation || contender.settings.traced_walls;
+  const Rms geometry = rms_difference(draws, geometry_[patches], n);
   point.geometry_rms_pct = by_view_factors ? unit * geometry.value : std::nan("");
   point.geometry_rms_error_pct = unit * geometry.error;
 
