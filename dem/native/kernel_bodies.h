@@ -124,6 +124,24 @@ struct KernelBodies {
     return c.periodic ? select_loop<true>(rows, c, i, j, count, first, second, source)
                       : select_loop<false>(rows, c, i, j, count, first, second, source);
   }
+  static std::int64_t find_near(const double* place, double gap_m, const std::int32_t* i,
+                                const std::int32_t* j, std::int64_t count, std::int32_t* number,
+                                double* distance_m) {
+    std::int64_t found = 0;
+    for (std::int64_t k = 0; k < count; k += W) {
+      V d[4];
+      S::pair_positions([&](std::int64_t row) { return place + 4 * row; }, i + k, j + k, d);
+      const V square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], reach = d[3] + S::set(gap_m);
+      unsigned apart = S::bits(S::less(reach * reach, square)) | S::bits(S::less(reach, S::set(0.0)));
+      alignas(64) double distance[W];
+      S::store(distance, S::sqrt(square));
+      for (int l = 0; l < W; ++l, apart >>= 1) {
+        number[found] = std::int32_t(k + l), distance_m[found] = distance[l];
+        found += k + l < count && !(apart & 1);
+      }
+    }
+    return found;
+  }
   static std::int64_t find_close(const float* x, const float* y, const float* z, const float* reach,
                                  const float p[4], const float period[3], const float inverse_period[3],
                                  std::int32_t first, std::int32_t count, std::int32_t* out) {
@@ -139,6 +157,7 @@ struct KernelBodies {
             plane_contacts,
             move,
             select_close,
+            find_near,
             find_close};
   }
 };

@@ -119,6 +119,10 @@ struct Kernels {
   std::int64_t (*select_close)(const RowView&, const StepConstants&, const std::int32_t* i,
                                const std::int32_t* j, std::int64_t count, std::int32_t* first,
                                std::int32_t* second, std::int32_t* source);
+  /// Keeps the pairs (i, j) whose surfaces are at most a gap apart, of rows placed at `place` (x, y, z, radius): their numbers
+  /// and the distances of their centres. Reads i and j up to a multiple of 8, writes up to 8 entries beyond.
+  std::int64_t (*find_near)(const double* place, double gap_m, const std::int32_t* i, const std::int32_t* j,
+                            std::int64_t count, std::int32_t* number, double* distance_m);
   decltype(&ScalarPack::find_close) find_close;
 };
 

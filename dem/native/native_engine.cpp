@@ -185,8 +185,8 @@ void NativeEngine::Impl::check_overlaps(const Bed& bed) {
     for (std::int64_t k = 0; k < s.own.near_count() + s.cross.near_count(); ++k) {
       const bool cross = k >= s.own.near_count();
       const auto& list = cross ? s.cross : s.own;
-      const auto i = list.near_first(cross ? k - s.own.near_count() : k),
-                 j = list.near_second(cross ? k - s.own.near_count() : k);
+      const auto i = list.near_firsts()[cross ? k - s.own.near_count() : k],
+                 j = list.near_seconds()[cross ? k - s.own.near_count() : k];
       const double sum = rows.radius[i] + rows.radius[j];
       const double depth = (sum - norm(periods->nearest(rows.position_of(i) - rows.position_of(j)))) /
                            std::min(rows.radius[i], rows.radius[j]);
@@ -254,7 +254,7 @@ NearPairs NativeEngine::near_pairs(const Bed& bed, double max_gap_m) {
   if (complete.particles_m < max_gap_m) return granrad::near_pairs(bed, max_gap_m);
   ++e.list_reads;
   NearPairs pairs;
-  pairs.particles = near_particles(bed, e.rows, *e.lists, max_gap_m);
+  pairs.particles = near_particles(bed, e.rows, *e.lists, e.kernels, max_gap_m);
   if (!bed.walls.empty()) {
     const bool listed = complete.walls_m >= max_gap_m && e.surface->is_whole();
     const bool images = e.periods->any;

@@ -26,41 +26,87 @@ class Images {
   double near_[3]{1e300, 1e300, 1e300};
 };
 
-std::vector<Vec3> wrapped_rows(const Bed& bed, const Rows& rows, int threads) {
-  std::vector<Vec3> wrapped(rows.count);
+/// x, y, z and radius of each row in the box, and of the two idle rows that pad lists.
+AlignedVector<double> places_in_box(const Bed& bed, const Rows& rows, int threads) {
+  AlignedVector<double> place(4 * (rows.count + 2));
 #pragma omp parallel for num_threads(threads) schedule(static)
-  for (std::int64_t i = 0; i < rows.count; ++i) wrapped[i] = wrapped_into_box(bed, rows.position_of(i));
-  return wrapped;
+  for (std::int64_t i = 0; i < rows.count; ++i) {
+    const Vec3 p = wrapped_into_box(bed, rows.position_of(i));
+    for (int a = 0; a < 3; ++a) place[4 * i + a] = p[a];
+    place[4 * i + 3] = rows.radius[i];
+  }
+  return place;
 }
+
+/// The pairs of one list at a time, behind those in `pairs`.
+class Reader {
+ public:
+  Reader(const Bed& bed, const Rows& rows, const Kernels& kernels, const AlignedVector<double>& place,
+         double max_gap_m)
+      : rows_(rows), kernels_(kernels), images_(bed), place_(place), gap_m_(max_gap_m) {
+    for (const bool p : bed.periodic) periodic_ |= p;
+  }
+
+  void read(const PairList& list, bool twins, std::vector<NearPair>& pairs) {
+    for (std::int64_t begin = 0; begin < list.near_count(); begin += block) {
+      const std::int64_t count = std::min(block, list.near_count() - begin);
+      const std::int32_t *first = list.near_firsts() + begin, *second = list.near_seconds() + begin;
+      const std::int64_t found =
+          periodic_ ? find_images(first, second, count)
+                    : kernels_.find_near(place_.data(), gap_m_, first, second, count, number_, distance_m_);
+      for (std::int64_t k = 0; k < found; ++k) {
+        const auto a = first[number_[k]], b = second[number_[k]];
+        if (twins && a > b) continue;
+        const auto i = rows_.bed_index[a], j = rows_.bed_index[b];
+        pairs.push_back({std::min(i, j), std::max(i, j), distance_m_[k]});
+      }
+    }
+  }
+
+ private:
+  static constexpr std::int64_t block = 512;  // their rows stay in the first caches
+
+  Vec3 place(std::int32_t row) const {
+    const double* p = place_.data() + 4 * std::int64_t(row);
+    return {p[0], p[1], p[2]};
+  }
+  std::int64_t find_images(const std::int32_t* first, const std::int32_t* second, std::int64_t count) {
+    std::int64_t found = 0;
+    for (std::int64_t k = 0; k < count; ++k) {
+      const Vec3 apart = images_.nearest(place(second[k]) - place(first[k]));
+      const double squared = dot(apart, apart),
+                   reach = (rows_.radius[first[k]] + rows_.radius[second[k]]) + gap_m_;
+      number_[found] = static_cast<std::int32_t>(k), distance_m_[found] = std::sqrt(squared);
+      found += (squared <= reach * reach) & (reach >= 0);  // no branch to guess
+    }
+    return found;
+  }
+
+  const Rows& rows_;
+  const Kernels& kernels_;
+  Images images_;
+  const AlignedVector<double>& place_;
+  double gap_m_;
+  bool periodic_ = false;
+  std::int32_t number_[block + 8];
+  double distance_m_[block + 8];
+};
 
 }  // namespace
 
 std::vector<NearPair> near_particles(const Bed& bed, const Rows& rows, const ContactLists& lists,
-                                     double max_gap_m) {
+                                     const Kernels& kernels, double max_gap_m) {
   const auto& shares = lists.shares();
   const auto threads = static_cast<int>(shares.size());
-  const std::vector<Vec3> points = wrapped_rows(bed, rows, threads);
-  const Images images(bed);
+  const auto place = places_in_box(bed, rows, threads);
   std::vector<std::vector<NearPair>> parts(shares.size());
 #pragma omp parallel num_threads(threads)
   {
     const int t = omp_get_thread_num();
-    auto& part = parts[t];
-    part.resize(shares[t].own.near_count() + shares[t].cross.near_count());
-    std::size_t found = 0;
-    const auto collect = [&](const PairList& list, bool twins) {
-      for (std::int64_t k = 0; k < list.near_count(); ++k) {
-        const auto a = list.near_first(k), b = list.near_second(k);
-        const Vec3 apart = images.nearest(points[b] - points[a]);
-        const double squared = dot(apart, apart), reach = (rows.radius[a] + rows.radius[b]) + max_gap_m;
-        const auto i = rows.bed_index[a], j = rows.bed_index[b];
-        part[found] = {std::min(i, j), std::max(i, j), std::sqrt(squared)};
-        found += (squared <= reach * reach) & (reach >= 0) & !(twins && a > b);  // no branch to guess
-      }
-    };
-    collect(shares[t].own, false);
-    collect(shares[t].cross, true);
-    part.resize(found);
+    parts[t].reserve(shares[t].own.near_count() + shares[t].cross.near_count());
+    Reader reader(bed, rows, kernels, place, max_gap_m);
+    reader.read(shares[t].own, false, parts[t]);
+    reader.read(shares[t].cross, true, parts[t]);
   }
   return sorted_by_rows(parts, bed.size());
 }

@@ -90,8 +90,9 @@ class PairList {
   std::int64_t tight_count() const { return tight_count_; }
   /// Contacts that touch now: tight pairs with a spring.
   std::int64_t touching_count() const;
-  std::int32_t near_first(std::int64_t k) const { return near_i_[k]; }
-  std::int32_t near_second(std::int64_t k) const { return near_j_[k]; }
+  /// The rows of the near pairs, padded with idle rows to a multiple of 8.
+  const std::int32_t* near_firsts() const { return near_i_.data(); }
+  const std::int32_t* near_seconds() const { return near_j_.data(); }
   std::size_t bytes() const;
 
  private:
