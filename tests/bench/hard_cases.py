@@ -32,13 +32,7 @@ def scene(walls, particles, emissivity=1.0, end_s=0.02, every_s=0.01, extra="", 
 name = "hard"
 end_time_s = {end_s}
 [material]
-density_kg_m3 = 3984
-specific_heat_J_kgK = 755
-conductivity_W_mK = 33
-youngs_modulus_Pa = 5e6
-poisson_ratio = 0.23
-restitution = 0.45
-friction = 0.4
+file = "alumina.toml"
 emissivity = {emissivity}
 [particles]
 {particles}

@@ -22,14 +22,7 @@ name = "replicas"
 end_time_s = {end}
 gravity_m_s2 = [0, 0, -9.81]
 [material]
-density_kg_m3 = 3984
-specific_heat_J_kgK = 755
-conductivity_W_mK = 33
-youngs_modulus_Pa = 5e6
-real_youngs_modulus_Pa = 414e9
-poisson_ratio = 0.23
-restitution = 0.45
-friction = 0.4
+file = "alumina.toml"
 [gas]
 [particles]
 file = "{file}"

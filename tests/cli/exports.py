@@ -83,13 +83,7 @@ def view_factors(folder):
 SCENE = """[scene]
 end_time_s = 0.02
 [material]
-density_kg_m3 = 3984
-specific_heat_J_kgK = 755
-conductivity_W_mK = 33
-youngs_modulus_Pa = 5e6
-poisson_ratio = 0.23
-restitution = 0.45
-friction = 0.4
+file = "alumina.toml"
 [particles]
 file = "flying.csv"
 temperature_K = 500

@@ -15,6 +15,7 @@
 #include "dem/feed/feed.h"
 #include "dem/scene/scene.h"
 #include "tests/record.h"
+#include "tests/scene_text.h"
 
 namespace granrad {
 namespace {
@@ -26,15 +27,8 @@ const std::string head = R"(
 [scene]
 end_time_s = 1
 gravity_m_s2 = [0, 0, -9.81]
-[material]
-density_kg_m3 = 3984
-specific_heat_J_kgK = 755
-conductivity_W_mK = 33
-youngs_modulus_Pa = 5e6
-poisson_ratio = 0.23
-restitution = 0.45
-friction = 0.4
-[particles]
+)" + scene_text::alumina +
+                         R"([particles]
 diameter_m = 0.8e-3
 [radiation]
 source = "none"

@@ -10,6 +10,7 @@
 #include "dem/feed/feed.h"
 #include "dem/io/snapshot.h"
 #include "dem/scene/scene.h"
+#include "tests/scene_text.h"
 #include "tests/temporary_folder.h"
 
 namespace granrad {
@@ -25,15 +26,8 @@ std::string shaft(const std::string& particles, double opens_at_s) {
 [scene]
 end_time_s = 1
 gravity_m_s2 = [0, 0, -9.81]
-[material]
-density_kg_m3 = 3984
-specific_heat_J_kgK = 755
-conductivity_W_mK = 33
-youngs_modulus_Pa = 5e6
-poisson_ratio = 0.23
-restitution = 0.45
-friction = 0.4
-[particles]
+)" + scene_text::alumina +
+         R"([particles]
 diameter_m = 0.8e-3
 )" + particles +
          R"(
