@@ -11,6 +11,26 @@ namespace granrad {
 namespace {
 /// Of the energy of the bed: temperatures are rounded to 1e-16 of it at every step, which is no defect of smaller heats.
 constexpr double least_received = 1e-5;
+
+const std::vector<double>& column(const StateBlock& block, const std::string& name, std::size_t size) {
+  const auto found = block.reals.find(name);
+  if (found == block.reals.end() || found->second.size() != size)
+    throw InputError(
+        fmt::format("energy ledger: column '{}' with {} values is missing (not a frame of a "
+                    "heat run); start the run anew",
+                    name, size));
+  return found->second;
+}
+
+std::vector<double> saved(const CompensatedSum& sum) {
+  return {sum.sum(), sum.lost()};
+}
+
+CompensatedSum restored(const StateBlock& block, const std::string& name) {
+  const auto& values = column(block, name, 2);
+  return CompensatedSum::restored(values[0], values[1]);
+}
+
 }  // namespace
 
 void CompensatedSum::add(double term) {
@@ -26,15 +46,33 @@ CompensatedSum CompensatedSum::restored(double sum, double lost) {
   return result;
 }
 
+void PathSums::add(const HeatPaths& heat) {
+  for (std::size_t k = 0; k < of_path_.size(); ++k) of_path_[k].add(heat.*HeatPaths::paths()[k].value);
+}
+
+HeatPaths PathSums::values() const {
+  HeatPaths heat;
+  for (std::size_t k = 0; k < of_path_.size(); ++k) heat.*HeatPaths::paths()[k].value = of_path_[k].value();
+  return heat;
+}
+
+void PathSums::save(StateBlock& block) const {
+  for (std::size_t k = 0; k < of_path_.size(); ++k)
+    block.reals[HeatPaths::paths()[k].column] = saved(of_path_[k]);
+}
+
+void PathSums::load(const StateBlock& block) {
+  for (std::size_t k = 0; k < of_path_.size(); ++k)
+    of_path_[k] = restored(block, HeatPaths::paths()[k].column);
+}
+
 void EnergyLedger::start(const Bed& bed) {
   *this = {};
   energy_at_start_J_ = thermal_energy_J(bed);
 }
 
 void EnergyLedger::receive(const HeatPaths& heat_J) {
-  solid_.add(heat_J.solid);
-  gas_.add(heat_J.gas);
-  radiation_.add(heat_J.radiation);
+  received_.add(heat_J);
 }
 
 void EnergyLedger::miss(double heat_J) {
@@ -42,7 +80,7 @@ void EnergyLedger::miss(double heat_J) {
 }
 
 HeatPaths EnergyLedger::received_J() const {
-  return {solid_.value(), gas_.value(), radiation_.value()};
+  return received_.values();
 }
 
 double EnergyLedger::stored_J(const Bed& bed, double feed_in_J, double feed_out_J) const {
@@ -60,34 +98,18 @@ double EnergyLedger::relative_defect(const Bed& bed, double feed_in_J, double fe
   return scale > 0 ? defect / scale : 0;
 }
 
-namespace {
-const char* const column_names[] = {"solid_J", "gas_J", "radiation_J", "missed_J"};
-}
-
 StateBlock EnergyLedger::save() const {
   StateBlock block;
   block.reals["energy_at_start_J"] = {energy_at_start_J_};
-  const CompensatedSum* sums[] = {&solid_, &gas_, &radiation_, &missed_};
-  for (int k = 0; k < 4; ++k) block.reals[column_names[k]] = {sums[k]->sum(), sums[k]->lost()};
+  received_.save(block);
+  block.reals["missed_J"] = saved(missed_);
   return block;
 }
 
 void EnergyLedger::load(const StateBlock& block) {
-  const auto column = [&](const std::string& name, std::size_t size) -> const std::vector<double>& {
-    const auto found = block.reals.find(name);
-    if (found == block.reals.end() || found->second.size() != size)
-      throw InputError(
-          fmt::format("energy ledger: column '{}' with {} values is missing (not a frame of a "
-                      "heat run); start the run anew",
-                      name, size));
-    return found->second;
-  };
-  energy_at_start_J_ = column("energy_at_start_J", 1)[0];
-  CompensatedSum* sums[] = {&solid_, &gas_, &radiation_, &missed_};
-  for (int k = 0; k < 4; ++k) {
-    const auto& saved = column(column_names[k], 2);
-    *sums[k] = CompensatedSum::restored(saved[0], saved[1]);
-  }
+  energy_at_start_J_ = column(block, "energy_at_start_J", 1)[0];
+  received_.load(block);
+  missed_ = restored(block, "missed_J");
 }
 
 }  // namespace granrad

@@ -18,6 +18,20 @@ class CompensatedSum {
   double sum_ = 0, lost_ = 0;
 };
 
+/// Sums of heats, each path apart.
+class PathSums {
+ public:
+  PathSums() : of_path_(HeatPaths::paths().size()) {}
+  void add(const HeatPaths& heat);
+  HeatPaths values() const;
+
+  void save(StateBlock& block) const;
+  void load(const StateBlock& block);
+
+ private:
+  std::vector<CompensatedSum> of_path_;  ///< as HeatPaths::paths
+};
+
 /// Energy received against energy stored, from time 0. The two sides are computed apart: `received` from the
 /// heats of every step, `stored` from the temperatures, so their difference checks the whole chain.
 class EnergyLedger {
@@ -42,7 +56,8 @@ class EnergyLedger {
 
  private:
   double energy_at_start_J_ = 0;
-  CompensatedSum solid_, gas_, radiation_, missed_;
+  PathSums received_;
+  CompensatedSum missed_;
 };
 
 }  // namespace granrad

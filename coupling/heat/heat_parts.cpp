@@ -46,16 +46,13 @@ HeatPaths advance_in_parts(Bed& bed, const Conductances& conductances, double dt
   const double part_s = dt_s / static_cast<double>(parts);
   const bool by_middle = part_s > straight * limit_s;
   from_walls_J.assign(bed.walls.size(), {});
-  CompensatedSum solid, gas, radiation;
+  PathSums sums;
   for (std::int64_t k = 0; k < parts; ++k) {
     const auto from_K = by_middle ? mid_step_temperatures_K(bed, conductances, part_s) : bed.temperature_K;
     add_wall_heats(bed, conductances, part_s, from_K, from_walls_J);
-    const HeatPaths received = advance_temperatures(bed, conductances, part_s, from_K);
-    solid.add(received.solid);
-    gas.add(received.gas);
-    radiation.add(received.radiation);
+    sums.add(advance_temperatures(bed, conductances, part_s, from_K));
   }
-  return {solid.value(), gas.value(), radiation.value()};
+  return sums.values();
 }
 
 }  // namespace granrad

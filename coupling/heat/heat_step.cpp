@@ -11,6 +11,18 @@
 
 namespace granrad {
 
+const std::vector<HeatPaths::Path>& HeatPaths::paths() {
+  static const std::vector<Path> all{
+      {"solid_J", &HeatPaths::solid}, {"gas_J", &HeatPaths::gas}, {"radiation_J", &HeatPaths::radiation}};
+  return all;
+}
+
+double HeatPaths::total() const {
+  double sum = 0;
+  for (const Path& path : paths()) sum += this->*path.value;
+  return sum;
+}
+
 double heat_capacity_J_K(const Bed& bed, std::size_t i) {
   return mass_kg(bed, i) * bed.materials[bed.material[i]].specific_heat_J_kgK;
 }
@@ -140,9 +152,7 @@ HeatPaths advance_temperatures(Bed& bed, const Conductances& conductances, doubl
               "shorten the radiation interval (time constant {:.4g} s)",
               heat_capacity_J_K(bed, i) / emission_slope(bed, i, std::max(1.0, bed.temperature_K[i])))));
   }
-  received.solid *= dt_s;
-  received.gas *= dt_s;
-  received.radiation *= dt_s;
+  for (const auto& path : HeatPaths::paths()) received.*path.value *= dt_s;
   return received;
 }
 

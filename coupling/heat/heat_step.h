@@ -6,10 +6,16 @@
 
 namespace granrad {
 
-/// One number per path of heat: solid contacts, gas lenses, radiation.
+/// One number per path of heat: solid contacts, gas lenses, radiation. A further path is a member and a line of `paths`.
 struct HeatPaths {
   double solid = 0, gas = 0, radiation = 0;
-  double total() const { return solid + gas + radiation; }
+
+  struct Path {
+    const char* column;  ///< its name in frames
+    double HeatPaths::*value;
+  };
+  static const std::vector<Path>& paths();
+  double total() const;
 };
 
 /// m c of a particle, J/K.

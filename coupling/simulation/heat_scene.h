@@ -1,5 +1,4 @@
 #pragma once
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -7,39 +6,11 @@
 
 #include "coupling/heat/conduction.h"
 #include "coupling/simulation/case_inputs.h"
+#include "coupling/simulation/radiation_scene.h"
 #include "dem/base/toml/toml_reader.h"
 #include "dem/scene/scene.h"
-#include "raytrace/exchange.h"
 
 namespace granrad {
-
-enum class RadiationKind { none, paths, embree, lines, shading, correlation };
-inline constexpr ChoiceNames<RadiationKind::correlation> radiation_names(
-    {{{RadiationKind::none, "none"},
-      {RadiationKind::paths, "paths"},
-      {RadiationKind::embree, "embree"},
-      {RadiationKind::lines, "lines"},
-      {RadiationKind::shading, "shading"},
-      {RadiationKind::correlation, "correlation"}}});
-inline const char* to_string(RadiationKind kind) {
-  return radiation_names.of(kind);
-}
-
-/// [radiation], and each source of [validate].
-struct RadiationSettings {
-  RadiationKind kind = RadiationKind::none;
-  std::filesystem::path table;  ///< correlation only
-  bool traced_walls = false;    ///< correlation only: rows of the walls by rays, not by the table
-  double rays =
-      0;  ///< paths: walks per update, 0: as many as `error` needs; embree, lines, traced walls: rays per particle
-  double error = 0;    ///< paths with rays chosen: relative standard error of the mean wall heat over the run
-  double every_s = 0;  ///< 0: chosen (see radiation_interval_s)
-  Closure closure = Closure::reciprocal;
-  int order = 0;  ///< lines only: of the spherical harmonics of each sphere's radiosity; 0: one radiosity
-  bool patches =
-      true;  ///< embree, lines, shading, traced wall rows: walls that reflect are cut into patches, one radiosity each
-  std::uint64_t seed = 1;
-};
 
 /// [output]
 struct OutputSettings {

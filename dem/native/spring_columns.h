@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 
 #include "dem/base/aligned.h"
@@ -32,8 +33,8 @@ class SpringColumns {
   std::size_t bytes() const { return 3 * (8 * full_[0].capacity() + 4 * rounded_[0].capacity()); }
 
  private:
-  AlignedVector<double> full_[3];
-  AlignedVector<float> rounded_[3];
+  std::array<AlignedVector<double>, 3> full_;
+  std::array<AlignedVector<float>, 3> rounded_;
   bool is_rounded_ = false;
 };
 

@@ -129,10 +129,11 @@ std::vector<double> SolidFractionField::free_parts(const Enclosure& enclosure) c
     for (int y = 0; y < count_[1]; ++y)
       for (int x = 0; x < count_[0]; ++x) {
         int points = 0;
-        for (int k = 0; k < 27; ++k)
-          points += inside(box_.min + Vec3{cell_m_.x * (x + (k % 3 + 0.5) / 3),
-                                           cell_m_.y * (y + (k / 3 % 3 + 0.5) / 3),
-                                           cell_m_.z * (z + (k / 9 + 0.5) / 3)});
+        for (int k = 0; k < 27; ++k) {
+          const int a = k % 3, b = k / 3 % 3, c = k / 9;
+          points += inside(box_.min + Vec3{cell_m_.x * (x + (a + 0.5) / 3), cell_m_.y * (y + (b + 0.5) / 3),
+                                           cell_m_.z * (z + (c + 0.5) / 3)});
+        }
         space.push_back(points * point_volume);
       }
   return space;

@@ -40,7 +40,7 @@ std::vector<FittableFile> look_at(const std::vector<std::filesystem::path>& file
     } catch (const InputError& error) {
       const std::string name = file.string();
       for (const auto& problem : error.problems())
-        problems.push_back(problem.starts_with(name) ? problem : name + ": " + problem);
+        problems.push_back(problem.starts_with(name) ? problem : fmt::format("{}: {}", name, problem));
     }
   if (!problems.empty()) throw InputError(problems);
   return fittable;
