@@ -47,9 +47,10 @@ void require_sound(const Enclosure& enclosure, const HitCounts& counts) {
   const auto rays = std::accumulate(counts.launched.begin(), counts.launched.end(), std::int64_t{0});
   const bool without_end = enclosure.walls.empty();  // no back to meet
   if (static_cast<double>(counts.leaked) > most_leaks * static_cast<double>(rays) && without_end)
-    throw NumericalError(advised(
-        fmt::format("radiation: {} of {} rays met nothing in 10^4 periods and mean free paths", counts.leaked, rays),
-        "the bed is too thin for a periodic box: make the box smaller, or close it with walls"));
+    throw NumericalError(
+        advised(fmt::format("radiation: {} of {} rays met nothing in 10^4 periods and mean free paths",
+                            counts.leaked, rays),
+                "the bed is too thin for a periodic box: make the box smaller, or close it with walls"));
   if (static_cast<double>(counts.leaked) > most_leaks * static_cast<double>(rays))
     throw NumericalError(advised(
         fmt::format("radiation: {} of {} rays met the back of a wall", counts.leaked, rays),

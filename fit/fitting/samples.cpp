@@ -10,8 +10,8 @@
 #include "dem/bed/cell_grid.h"
 #include "dem/bed/wall_shape.h"
 #include "fit/correlation/correlation_source.h"
-#include "raytrace/unobstructed_pair.h"
 #include "raytrace/exact.h"
+#include "raytrace/unobstructed_pair.h"
 
 namespace granrad {
 

@@ -57,8 +57,8 @@ double temperature_after_2_s(ExchangeSource& source, double dt_s, Heats heats) {
   const Enclosure enclosure = make_enclosure(bed, bed.box);
   const auto steps = std::lround(2 / dt_s);
   for (long k = 0; k < steps; ++k) {
-    const double sphere_K =
-        heats == Heats::midway ? midway_temperatures_K(bed, bed.temperature_K, dt_s)[0] : bed.temperature_K[0];
+    const double sphere_K = heats == Heats::midway ? midway_temperatures_K(bed, bed.temperature_K, dt_s)[0]
+                                                   : bed.temperature_K[0];
     const RadiativeState state = state_of(bed, sphere_K);
     bed.radiative_heat_W[0] = source.net_heat(enclosure, state, static_cast<std::uint64_t>(k)).heat_W[0];
     advance_temperatures(bed, {}, dt_s);

@@ -12,6 +12,7 @@
 #include "dem/base/error.h"
 #include "raytrace/embree/embree_tracer.h"
 #include "raytrace/rays/emission.h"
+#include "raytrace/rays/sampling.h"
 #include "tests/bench/bare_embree.h"
 #include "tests/bench/trace_book.h"
 #include "tests/bench/trace_methods.h"

@@ -9,8 +9,8 @@
 
 #include "dem/base/error.h"
 #include "dem/base/random.h"
-#include "raytrace/unobstructed_pair.h"
 #include "raytrace/exact.h"
+#include "raytrace/unobstructed_pair.h"
 #include "tests/source_dir.h"
 
 namespace granrad {
