@@ -33,6 +33,7 @@ class Case:
         """Mean W of each wall over the run."""
         heat = collections.defaultdict(float)
         for name, _, solid, gas, radiation in self.walls:
+            name = name.removeprefix("vessel.")  # of solids in one file
             heat[name[:-2] if name.endswith("_2") else name] += (solid + gas + radiation) / len(self.rows)
         return heat
 

@@ -148,7 +148,7 @@ def unshuttered(scene):
 
 
 def as_solids(scene):
-    return "solids", changed(scene, wall_style="solids"), 1, {face: "vessel." + face for face in FACES}
+    return "solids", changed(scene, wall_style="solids"), 1, same_walls()
 
 
 def as_walls(style):
