@@ -103,7 +103,7 @@ def main():
     with tempfile.TemporaryDirectory(dir="/dev/shm" if os.access("/dev/shm", os.W_OK) else None) as root:
         for kind, where, alter in [e for e in ERRORS if not sys.argv[2:] or e[0] in sys.argv[2:]]:
             runner = Altered(os.path.abspath(sys.argv[1]), where, alter)
-            suited = [s for s in range(1, 2000) if where not in VARIANTS or
+            suited = [s for s in range(1, 20000) if where not in VARIANTS or
                       where in [v[0] for v in variants.variants(scenes.generate(s))]][:MOST_SCENES]
             seen = any(kind in kinds for kinds, _ in kind_found(runner, suited, root))
             print("%-20s %s" % (kind, "seen" if seen else "NOT SEEN"), flush=True)

@@ -109,8 +109,8 @@ def motion(r, scene):
         scene["wall_style"] = r.choice(["box", "box", "polygons", "halves", "meshes", "solids"])
     if r.random() < 0.1:
         scene["dem"]["precision"] = "mixed"
-    if r.random() < 0.2:
-        scene["every_steps"] = 1
+    if r.random() < 0.2 or (scene["gas"] is not None and scene["source"] == "none"):
+        scene["every_steps"] = 1  # gas lenses are followed at heat steps alone
     if r.random() < 0.05 and not scene["feed"]:
         scene["engine"] = "liggghts"
     if scene["feed"]:

@@ -198,9 +198,7 @@ def variants(scene):
                                                            as_solids, reordered]
         if scene["region"]:
             walls = []
-        if scene["gas"] is None:  # gas lenses are followed at heat steps alone
-            walls = walls + [finer]
-        return [make(scene) for make in [moved, mirrored, turned, larger] + walls]
+        return [make(scene) for make in [moved, mirrored, turned, larger, finer] + walls]
     if not scene["frozen"] or scene["feed"] or not scene["particles"]:
         return []
     all_of_them = [moved, mirrored, turned, larger, renumbered]
