@@ -55,10 +55,11 @@ bool has_two_sides(const Wall& wall) {
   std::multimap<double, const WallFace*> by_distance;
   for (const WallFace& face : faces)
     by_distance.emplace(std::abs(dot(face.vertices[0] - wall.vertices[0], face.normal)), &face);
+  // Triangles of the two sides may be cut along opposite diagonals: their middles then lie on edges of the other.
   const auto inside = [&](const Vec3& p, const WallFace& face) {
     for (std::size_t k = 0; k < face.vertices.size(); ++k) {
       const Vec3 edge = face.vertices[(k + 1) % face.vertices.size()] - face.vertices[k];
-      if (dot(cross(face.normal, edge), p - face.vertices[k]) < 0) return false;
+      if (dot(cross(face.normal, edge), p - face.vertices[k]) < -same * size * norm(edge)) return false;
     }
     return true;
   };

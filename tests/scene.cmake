@@ -1,5 +1,6 @@
 # tests of the scene vocabulary
 granrad_test(unit/enclosure granrad_raytrace)
+granrad_test(unit/mesh_check granrad_enclosure)
 granrad_test(unit/wall_patches granrad_raytrace)
 granrad_test(unit/frame granrad_scene)
 granrad_test(unit/import granrad_scene)
