@@ -185,13 +185,34 @@ std::string opening_problem(const Scene& scene, const Bed& bed, const EnclosureC
   return then.open > few_open ? said(then, " once the shutters are open") : "";
 }
 
+bool reflects(const Wall& wall) {
+  return wall.role == WallRole::adiabatic || (wall.role == WallRole::isothermal && wall.emissivity < 1);
+}
+
+/// Walls that reflect and would be cut into patches, but cannot: not those the scene asks to be whole.
+std::string whole_walls_note(const RadiationSettings& settings, const Enclosure& enclosure) {
+  if (!settings.patches || settings.closure != Closure::reciprocal || settings.kind == RadiationKind::paths)
+    return "";
+  const bool periodic = enclosure.periodic != std::array<bool, 3>{};
+  std::vector<char> cut;
+  for (const Wall& wall : enclosure.walls) cut.push_back(reflects(wall) && !periodic);
+  const WallPatches patches(enclosure.walls, infinity, cut);
+  std::string names;
+  for (std::size_t w = 0; w < cut.size(); ++w)
+    if (reflects(enclosure.walls[w]) && !patches.is_cut(static_cast<std::int32_t>(w)))
+      names += (names.empty() ? "" : ", ") + enclosure.walls[w].name;
+  if (names.empty()) return "";
+  return advised(fmt::format("one radiosity for all of each wall that reflects, {}: {}", names,
+                             periodic ? "walls of periodic boxes are not cut into patches"
+                                      : "meshes of more than 1000 flat faces are not cut into patches"),
+                 "where light falls on them unevenly, source = paths has no such error");
+}
+
 /// Sources of one radiosity for each wall: light that falls on one side of a sheet would leave from the other.
 std::vector<std::string> sheets_that_join_their_sides(const Enclosure& enclosure) {
   std::vector<std::string> problems;
   for (const Wall& wall : enclosure.walls) {
-    const bool reflects =
-        wall.role == WallRole::adiabatic || (wall.role == WallRole::isothermal && wall.emissivity < 1);
-    if (reflects && has_two_sides(wall))
+    if (reflects(wall) && has_two_sides(wall))
       problems.push_back(advised(
           fmt::format(
               "wall {} has two sides and reflects (with one radiosity for both, what falls on the one "
@@ -208,7 +229,9 @@ std::vector<std::string> check_radiation(const RadiationSettings& settings, cons
                                          const Bed& bed, std::optional<double> surroundings_K) {
   if (settings.kind == RadiationKind::none) return {};
   const Enclosure enclosure = make_enclosure(bed, scene.region);
-  const EnclosureCheck check = check_enclosure(enclosure, bed.id);
+  EnclosureCheck check = check_enclosure(enclosure, bed.id);
+  if (auto note = whole_walls_note(settings, enclosure); !note.empty())
+    check.notes.push_back(std::move(note));
   std::vector<std::string> problems = check.problems;
   if (!known_surroundings_K(scene, surroundings_K))
     if (const auto problem = opening_problem(scene, bed, check); !problem.empty())

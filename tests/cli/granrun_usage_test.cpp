@@ -65,3 +65,27 @@ TEST(GranrunUsage, PrintsInTheUnitsOfTheScene) {
     EXPECT_NE(run.out.find(text), std::string::npos) << text << "\n" << run.out;
   EXPECT_EQ(run.out.find("kg/s"), std::string::npos) << run.out;
 }
+
+TEST(GranrunUsage, CheckNamesWallsThatHaveOneRadiosity) {
+  Scratch scratch;
+  scratch.write("bed.csv", "x,y,z,radius\n0.002,0.002,0.002,0.0005\n");
+  const std::string rest =
+      "[dem]\nengine = \"none\"\n[particles]\nfile = \"bed.csv\"\n[radiation]\nsource = \"embree\"\n"
+      "rays = 100\nevery_s = 0.1\n[output]\nevery_s = 0.1\n";
+  const auto checked = [&](const std::string& periodic, const std::string& more) {
+    std::string walls;
+    for (const std::string face : {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"})
+      if (periodic.empty() || face[0] != 'x') walls += "[walls." + face + "]\nrole = \"adiabatic\"\n";
+    const auto scene =
+        scratch.write("walls.toml", "[scene]\nend_time_s = 1\n" + std::string(granrad::scene_text::alumina) +
+                                        "[box]\nsize_m = [0.004, 0.004, 0.004]\n" + periodic + walls + rest);
+    const auto outcome = granrun(scratch, "check " + scene.string() + more);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    return outcome.out.find("one radiosity for all of each wall that reflects, y_min, y_max, z_min, z_max") !=
+           std::string::npos;
+  };
+  EXPECT_FALSE(checked("", ""));
+  EXPECT_TRUE(checked("periodic = [\"x\"]\n", ""));
+  EXPECT_FALSE(checked("periodic = [\"x\"]\n", " --set radiation.source=paths"));
+  EXPECT_FALSE(checked("periodic = [\"x\"]\n", " --set radiation.wall_patches=whole")) << "as was asked";
+}
