@@ -86,14 +86,10 @@ TemperatureBounds temperature_bounds(const Bed& bed, const Conductances& conduct
 
 ConductedTemperatures conducted_temperatures(const Bed& bed, const Conductances& conductances, double dt_s,
                                              const TemperatureBounds& bounds) {
-  const std::int64_t parts = conduction_parts(dt_s, conduction_step_limit_s(bed, conductances));
+  constexpr double most_parts = 1e4;
   const std::vector<double> anything(bed.size(), infinity);
   ConductedTemperatures conducted{bed.temperature_K, anything, anything};
-  ConductionSteps steps(bed, conductances, dt_s / static_cast<double>(parts));
-  const bool conducts = !conductances.particles.empty() || !conductances.walls.empty();
-  for (std::int64_t k = conducts ? 1 : parts; k <= parts; ++k) {
-    if (conducts) steps.advance(conducted.end_K);
-    const double passed = static_cast<double>(k) / static_cast<double>(parts);
+  const auto keep_room = [&](double passed) {
     for (std::size_t i = 0; i < bed.size(); ++i) {
       const double T = conducted.end_K[i];
       double& rise = conducted.most_rise_K[i];
@@ -101,7 +97,16 @@ ConductedTemperatures conducted_temperatures(const Bed& bed, const Conductances&
       rise = std::max(0.0, std::min(rise, (bounds.hottest_K - T) / passed));
       fall = std::max(0.0, std::min(fall, (T - bounds.coldest_K) / passed));
     }
+  };
+  if (!conductances.particles.empty() || !conductances.walls.empty()) {
+    const double parts = std::ceil(dt_s / conduction_step_limit_s(bed, conductances) * (1 + 1e-12));
+    ConductionSteps steps(bed, conductances, dt_s / std::max(1.0, parts));
+    for (double k = 1; k <= std::min(parts, most_parts); ++k) {
+      steps.advance(conducted.end_K);
+      keep_room(k / parts);
+    }
   }
+  keep_room(1);
   return conducted;
 }
 

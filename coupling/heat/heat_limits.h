@@ -24,7 +24,8 @@ struct ConductedTemperatures {
   std::vector<double> most_rise_K, most_fall_K;
 };
 
-/// By the steps of advance_in_parts with the conductances as they are.
+/// By midpoint steps up to the limit of conduction with the conductances as they are; over the first 10^4 of them, beyond which
+/// what is fast has come to rest.
 ConductedTemperatures conducted_temperatures(const Bed& bed, const Conductances& conductances, double dt_s,
                                              const TemperatureBounds& bounds);
 

@@ -16,18 +16,7 @@ constexpr double straight =
     0.1;  ///< of the limit: steps so short are right to 0.2 % with the heats of their start
 constexpr double rounding = 1e-12;  // a part must not be longer than the limit
 
-void add_wall_heats(const Bed& bed, const Conductances& conductances, double dt_s,
-                    const std::vector<double>& from_K, std::vector<HeatPaths>& given_J) {
-  for (const auto& g : conductances.walls) {
-    const double heat_K_s = (bed.walls[g.wall].temperature_K - from_K[g.i]) * dt_s;
-    given_J[g.wall].solid += g.solid_W_K * heat_K_s;
-    given_J[g.wall].gas += g.gas_W_K * heat_K_s;
-  }
-}
-
-}  // namespace
-
-std::int64_t conduction_parts(double dt_s, double limit_s) {
+std::int64_t parts_of(double dt_s, double limit_s) {
   if (dt_s <= limit_s) return 1;
   const double parts = std::ceil(dt_s / limit_s * (1 + rounding));
   if (parts > most_parts)
@@ -39,10 +28,21 @@ std::int64_t conduction_parts(double dt_s, double limit_s) {
   return static_cast<std::int64_t>(parts);
 }
 
+void add_wall_heats(const Bed& bed, const Conductances& conductances, double dt_s,
+                    const std::vector<double>& from_K, std::vector<HeatPaths>& given_J) {
+  for (const auto& g : conductances.walls) {
+    const double heat_K_s = (bed.walls[g.wall].temperature_K - from_K[g.i]) * dt_s;
+    given_J[g.wall].solid += g.solid_W_K * heat_K_s;
+    given_J[g.wall].gas += g.gas_W_K * heat_K_s;
+  }
+}
+
+}  // namespace
+
 HeatPaths advance_in_parts(Bed& bed, const Conductances& conductances, double dt_s,
                            std::vector<HeatPaths>& from_walls_J) {
   const double limit_s = conduction_step_limit_s(bed, conductances);
-  const std::int64_t parts = conduction_parts(dt_s, limit_s);
+  const std::int64_t parts = parts_of(dt_s, limit_s);
   const double part_s = dt_s / static_cast<double>(parts);
   const bool by_middle = part_s > straight * limit_s;
   from_walls_J.assign(bed.walls.size(), {});

@@ -1,17 +1,13 @@
 #pragma once
-#include <cstdint>
 #include <vector>
 
 #include "coupling/heat/heat_step.h"
 
 namespace granrad {
 
-/// In how many equal steps conduction takes dt_s. Throws NumericalError when more than 10^5.
-std::int64_t conduction_parts(double dt_s, double limit_s);
-
 /// advance_temperatures over dt_s in as many equal steps as conduction_step_limit_s asks for, so that conduction follows
 /// a bed whose contacts form and grow; by the midpoint rule unless the steps are much shorter than that. `from_walls_J` gets what the particles received from each wall of the Bed through
-/// contacts and gas. Throws NumericalError as conduction_parts.
+/// contacts and gas. Throws NumericalError when that takes more than 10^5 steps.
 HeatPaths advance_in_parts(Bed& bed, const Conductances& conductances, double dt_s,
                            std::vector<HeatPaths>& from_walls_J);
 
