@@ -173,7 +173,7 @@ SnapshotEnclosure read_enclosure(const std::filesystem::path& snapshot, const En
       check = check_enclosure(result.enclosure, bed.id);
     }
   if (!check.problems.empty()) {
-    for (auto& problem : check.problems) problem = snapshot.string() + ": " + problem;
+    for (auto& problem : check.problems) problem = fmt::format("{}: {}", snapshot.string(), problem);
     throw InputError(check.problems);
   }
   add_notes(result, check.notes);

@@ -52,7 +52,8 @@ void LineBins::fill(const LineKernels& kernels, const LineSpheres& spheres, cons
 inline void LineBins::put(const LineRecord& disc, std::int32_t slab, std::int32_t across, std::int32_t down,
                           const LineLattice& lattice) {
   const std::int32_t tile = down * lattice.tiles_across + across;
-  Bin& bin = bins_[static_cast<std::size_t>(tile * slabs_ + slab)];
+  Bin& bin = bins_[static_cast<std::size_t>(tile) * static_cast<std::size_t>(slabs_) +
+                   static_cast<std::size_t>(slab)];
   if (bin.to == bin.end) extend(bin);
   const std::int32_t column = (disc.cell & 0xffff) - (across << lattice.tile_shift) + lattice.margin;
   const std::int32_t row = (disc.cell >> 16) - (down << lattice.tile_shift) + lattice.margin;

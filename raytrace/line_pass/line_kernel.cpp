@@ -132,7 +132,8 @@ struct Tile {
   static Mask disc(float du, float dv, float reach2) {
     Mask mask = 0;
     for (int k = 0; k < 16; ++k) {
-      const float u = static_cast<float>(k % 4) + du, v = static_cast<float>(k / 4) + dv;
+      const int column = k % 4, row = k / 4;
+      const float u = static_cast<float>(column) + du, v = static_cast<float>(row) + dv;
       mask |= static_cast<Mask>(u * u + v * v < reach2) << k;
     }
     return mask;

@@ -60,8 +60,9 @@ int chord_directions(const LineScene& scene) {
 
 /// Directions between two merges of what was met: as many as the memory affords.
 int directions_per_merge(const LineOptions& options, double ends, int directions) {
-  const double affordable = static_cast<double>(options.memory_limit_bytes / 4 / PairCounts::bytes_per_event);
-  const double events = std::min(affordable, std::max(least_events, merged_directions * ends));
+  const std::size_t affordable = options.memory_limit_bytes / 4 / PairCounts::bytes_per_event;
+  const double events =
+      std::min(static_cast<double>(affordable), std::max(least_events, merged_directions * ends));
   return static_cast<int>(std::clamp(events / ends, 1.0, static_cast<double>(directions)));
 }
 
