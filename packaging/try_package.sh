@@ -10,7 +10,7 @@ if [[ -n ${2:-} ]]; then
   cp -a "$2/." "$root/"
 else
   # The mirror this machine uses.
-  mirror=$(sed -nE 's/^(URIs:|deb (\[[^]]*\] )?) *(https?:[^ ]+).*/\3/p' /etc/apt/sources.list /etc/apt/sources.list.d/* 2>/dev/null | head -1)
+  mirror=$(sed -nE 's/^(URIs:|deb (\[[^]]*\] )?) *(https?:[^ ]+).*/\3/p' /etc/apt/sources.list /etc/apt/sources.list.d/* 2>/dev/null | head -1 || true)
   debootstrap --variant=minbase bookworm "$root" ${mirror:+"$mirror"} >"$root.log" 2>&1 || { tail -5 "$root.log"; exit 1; }
 fi
 rm -f "$root/etc/apt/sources.list"
