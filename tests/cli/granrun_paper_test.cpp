@@ -76,9 +76,10 @@ TEST(GranrunPaper, QuickPartOfTheBookHasItsVerdictsLong) {
   const auto outcome = granrun(scratch, "study " + book_study.string() + " --quick -q -o " + folder.string());
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const auto judged = content(folder / "claims.csv");
-  for (const char* id : {"V1a", "V1b", "V1c", "V1d",  "V1e",  "V2a",  "V2b",  "V2c",  "V5a",  "V5b",  "V6",
-                         "V9a", "V9b", "V9c", "V11a", "V11b", "V11c", "V11d", "V11e", "V11f", "V11g", "V11k"})
+  for (const char* id :
+       {"V1a", "V1b", "V1c", "V1d",  "V1e",  "V1f",  "V2a",  "V2b",  "V2c",  "V5a",  "V5b", "V6",
+        "V9a", "V9b", "V9c", "V11a", "V11b", "V11c", "V11d", "V11e", "V11f", "V11g", "V11k"})
     EXPECT_TRUE(has_verdict(judged, id, "agrees")) << id << "\n" << judged;
-  for (const char* id : {"V1f", "V2d", "V2e", "V5c", "V5d", "V5e"})
+  for (const char* id : {"V2d", "V2e", "V5c", "V5d", "V5e"})
     EXPECT_TRUE(has_verdict(judged, id, "differs")) << id << ": known to differ, and told so\n" << judged;
 }
