@@ -14,14 +14,28 @@ namespace granrad {
 
 namespace {
 
+/// A sliver that walls cut out of each other leave, and no ray has met: at most this part of its wall is left out.
+constexpr double most_left_out = 0.01;
+
+bool sees_nothing(const ExchangeAreas& areas, std::int32_t s) {
+  const auto row = areas.pattern.row_begin.begin() + s;
+  return std::all_of(areas.value.begin() + row[0], areas.value.begin() + row[1],
+                     [](double x) { return x == 0; });
+}
+
 /// Surfaces, walls in patches, that are not excluded.
 std::vector<std::int32_t> surfaces_kept(const Enclosure& enclosure, const WallPatches& patches,
-                                        const std::vector<char>& excluded) {
+                                        const std::vector<char>& excluded, const ExchangeAreas& areas) {
   const auto spheres = static_cast<std::int32_t>(enclosure.sphere_count());
   std::vector<std::int32_t> kept(enclosure.sphere_count());
   std::iota(kept.begin(), kept.end(), 0);
+  const auto is_sliver = [&](std::int32_t p) {
+    const Wall& wall = enclosure.walls[static_cast<std::size_t>(patches.wall(p))];
+    return areas.area_m2[static_cast<std::size_t>(spheres + p)] < most_left_out * area(wall) &&
+           sees_nothing(areas, spheres + p);
+  };
   for (std::int32_t p = 0; p < patches.count(); ++p)
-    if (!excluded[static_cast<std::size_t>(patches.wall(p))]) kept.push_back(spheres + p);
+    if (!excluded[static_cast<std::size_t>(patches.wall(p))] && !is_sliver(p)) kept.push_back(spheres + p);
   kept.push_back(spheres + patches.count());
   return kept;
 }
@@ -78,7 +92,7 @@ void RadiositySource::prepare(const Enclosure& enclosure, const RadiativeState& 
   const WallPatches patches(enclosure.walls, any ? patch_length_m(enclosure, reflects) : 0, reflects);
   ExchangeEstimate estimate = estimate_(enclosure, patches, geometry_key(enclosure));
   lost_rays_ = estimate.lost_rays;
-  const auto kept = surfaces_kept(enclosure, patches, excluded);
+  const auto kept = surfaces_kept(enclosure, patches, excluded, estimate.areas);
   areas_ = close(granrad::restricted(estimate.areas, kept), closure_, report_);
   replicates_ = restricted(std::move(estimate.replicates), kept, spheres + patches.count() + 1);
   surface_ = kept;

@@ -94,6 +94,8 @@ def steps(r, scene):
     if not frozen:  # so many steps that a scene takes no longer than others
         every = min(every, 300 * scene["diameter"] * math.sqrt(1e-3 / 1))
     scene["every"], scene["rows"] = every, r.randrange(3, 7)
+    if not frozen and scene["gas"] is not None and source == "none":
+        scene["every_steps"] = 1  # gas lenses are followed at heat steps alone
     scene["conduction"] = {"solid": r.random() < 0.8, "modulus_exponent": r.choice([0.2, 1 / 3])}
     scene["rays"] = {"none": 0, "paths": r.choice([2000, 10000]), "embree": 400, "lines": 2000, "shading": 400,
                      "correlation": 0}[source]
@@ -109,8 +111,8 @@ def motion(r, scene):
         scene["wall_style"] = r.choice(["box", "box", "polygons", "halves", "meshes", "solids"])
     if r.random() < 0.1:
         scene["dem"]["precision"] = "mixed"
-    if r.random() < 0.2 or (scene["gas"] is not None and scene["source"] == "none"):
-        scene["every_steps"] = 1  # gas lenses are followed at heat steps alone
+    if r.random() < 0.2:
+        scene["every_steps"] = 1
     if r.random() < 0.05 and not scene["feed"]:
         scene["engine"] = "liggghts"
     if scene["feed"]:
