@@ -215,7 +215,7 @@ TEST(Conduction, RefusesAStepBeyondTheLimitAndNamesIt) {
 // Two equal spheres meet at the mean: T1 - T2 = D exp(-2 t G / (m c)). A step of 20 limits is 20 parts of it, each of
 // second order: (1 - x + x^2 / 2)^20 of D is left with x = 2 0.1, never less than none.
 // Planted: one part, which is refused; the heats of the last part alone, which leave the books open.
-TEST(Conduction, LongStepsAreDoneInPartsThatNeverOvershoot) {
+TEST(Conduction, StepsBeyondTheLimitAreDoneInPartsThatNeverOvershoot) {
   Bed bed = pair_at(7.95e-4);
   bed.temperature_K = {900, 300};
   const auto g = conductances(bed, touching(7.95e-4), {});
@@ -240,7 +240,7 @@ TEST(Conduction, RefusesMaterialsItCannotUse) {
 
 // The longest steps that are allowed, against the closed form: the difference of a pair goes with exp(-2 G t / (m c)).
 // Planted, seen: heats of the start of each step (28 K of 700 K off after a time constant).
-TEST(Conduction, TheLongestStepsFollowTheExponential) {
+TEST(Conduction, TheLargestStepsFollowTheExponential) {
   Bed bed = pair_at(7.95e-4);
   const auto g = conductances(bed, touching(7.95e-4), {});
   const double limit = conduction_step_limit_s(bed, g);

@@ -51,7 +51,7 @@ RadiositySource lines_source() {
           Closure::reciprocal};
 }
 
-TEST(LongRadiationSteps, KeepTheMaximumPrincipleAndEnergy) {
+TEST(RadiationIntervals, KeepTheMaximumPrincipleAndEnergy) {
   for (const double emissivity : {1.0, 0.3})
     for (const bool heating : {true, false}) {
       Bed bed = row_of_spheres(heating ? 3000 : 300, 3000, 300, emissivity);
@@ -87,7 +87,7 @@ double after_one_time_constant(int steps) {
   return bed.temperature_K[0];
 }
 
-TEST(LongRadiationSteps, AreOfFirstOrder) {
+TEST(RadiationIntervals, AreOfFirstOrder) {
   const double fine = 2 * after_one_time_constant(8192) - after_one_time_constant(4096);
   const double e1 = after_one_time_constant(1) - fine, e16 = after_one_time_constant(16) - fine,
                e32 = after_one_time_constant(32) - fine;
@@ -95,7 +95,7 @@ TEST(LongRadiationSteps, AreOfFirstOrder) {
   EXPECT_NEAR(e1 / 700, -0.082, 0.001) << "as docs/theory.md states: one step of a whole time constant";
 }
 
-TEST(LongRadiationSteps, HeatBeyondTheBoundsGoesBackToTheWalls) {
+TEST(RadiationIntervals, HeatBeyondTheBoundsGoesBackToTheWalls) {
   const Bed bed = row_of_spheres(1000, 300, 990, 1);
   const Enclosure enclosure = make_enclosure(bed, bed.box);
   const double dt_s = 1e-3, capacity = heat_capacity_J_K(bed, 0);

@@ -73,7 +73,7 @@ TEST(GranrunRefusal, LeadsOnWithAnotherStep) {
 }
 
 // A signal in the middle of an update that takes a minute. Planted: the update taken to its end (the frame is later).
-TEST(GranrunRefusal, LongUpdatesStopAtOnce) {
+TEST(GranrunRefusal, SlowUpdatesStopAtOnce) {
   for (const char* source : {"paths", "lines", "embree"}) {
     SCOPED_TRACE(source);
     Scratch scratch;

@@ -49,7 +49,7 @@ double warmed_K(const std::string& engine, const std::string& opens, bool stop =
   return simulation->bed().temperature_K[0] - 300;
 }
 
-TEST(ShutterHeat, AFloorThatIsTakenAwayHeatsNoLonger) {
+TEST(ShutterHeat, AFloorThatIsTakenAwayHeatsNoMore) {
   for (const char* engine : {"none", "replay"}) {
     const double always = warmed_K(engine, "");
     ASSERT_GT(always, 1e-3);
