@@ -26,9 +26,9 @@ double lens_area(double a, double b, double d) {
 
 double exact_two_sphere(double r1, double r2, double s) {
   const double a = std::max(r1, r2), b = std::min(r1, r2);
-  s = std::max(s, a + b);
+  if (a != b) s = std::max(s, a + b);
   // Below theta_in the smaller disc lies whole inside the larger one.
-  const double theta_in = std::asin((a - b) / s), theta_out = std::asin((a + b) / s);
+  const double theta_in = std::asin((a - b) / s), theta_out = std::asin(std::min(1.0, (a + b) / s));
   const double half = std::sin(theta_in / 2), whole_part = pi * b * b * 2 * half * half;
   const double width = theta_out - theta_in;
   const auto integrand = [&](double phi) {

@@ -11,8 +11,10 @@ namespace granrad {
 ///   F12 = 1 / (2 pi r1^2)  integral_0^thetaM  sin(theta) Lens(r1, r2, s sin(theta)) dtheta,
 /// sin(thetaM) = min(1, (r1 + r2) / s), Lens(a, b, d) = common area of two discs d apart. Equal and touching:
 /// 0.0755868184216. Gauss-Legendre after a substitution that removes the end-point roots; error below
-/// 1e-10 (1e-9 at a ratio of the radii of 100), about 1 microsecond. Preconditions: r1, r2, s > 0; s < r1 +
-/// r2 is read as touching.
+/// 1e-10 (1e-9 at a ratio of the radii of 100), about 1 microsecond. Preconditions: r1, r2, s > 0. Overlapping, a ray that
+/// starts inside the other sphere is a hit on it: a line through both discs then counts where it leaves the other sphere last,
+/// and by the symmetry of equal spheres half of the two directions of all such lines do, so that the formula holds. Unequal
+/// ones are read as touching.
 double exact_two_sphere(double r1, double r2, double s);
 
 /// View factor from a sphere to a planar wall that does not cut it: solid angle at the centre / 4 pi,

@@ -59,11 +59,12 @@ TEST_P(TwoSphereFactor, EqualsQuadrature) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(ContactToTenDiameters, TwoSphereFactor,
+INSTANTIATE_TEST_SUITE_P(OverlapToTenDiameters, TwoSphereFactor,
                          testing::Values(TwoSpheres{r, r, 0}, TwoSpheres{r, r, 0.1}, TwoSpheres{r, r, 1},
                                          TwoSpheres{r, r, 9}, TwoSpheres{r, 3 * r, 0},
                                          TwoSpheres{r, 3 * r, 2}, TwoSpheres{r, 100 * r, 0},
-                                         TwoSpheres{r, 0.2 * r, 9}));
+                                         TwoSpheres{r, 0.2 * r, 9}, TwoSpheres{r, r, -0.02},
+                                         TwoSpheres{r, r, -0.2}));
 
 // chi^2 of 200 seeds, both directions, around the exact value, in units of the sigma that one_way_estimate
 // states. Its own scatter is sqrt(2 / 400) = 0.07.
