@@ -85,7 +85,7 @@ TEST_F(RanksLiggghts, TwoSpheresMeetAcrossParts) {
 }
 
 TEST_F(RanksLiggghts, ABedMovesAsOnOneRankLong) {
-  const auto scene = scene_of(packed_rows());
+  const auto scene = scene_of(packed_rows(), "[0.004, 0.0032, 0.0064]");
   const auto alone = scratch.root / "alone", shared = scratch.root / "shared";
   ASSERT_EQ(granrun(scratch, line(scene, alone)).code, 0);
   const auto outcome = run_on_ranks(scratch, 2, "granrun", line(scene, shared));
@@ -97,7 +97,7 @@ TEST_F(RanksLiggghts, ABedMovesAsOnOneRankLong) {
 }
 
 TEST_F(RanksLiggghts, ABedGoesOnWithAnotherNumberOfRanksLong) {
-  const auto scene = scene_of(packed_rows());
+  const auto scene = scene_of(packed_rows(), "[0.004, 0.0032, 0.0064]");
   const auto alone = scratch.root / "alone", resumed = scratch.root / "resumed";
   ASSERT_EQ(granrun(scratch, line(scene, alone)).code, 0);
   ASSERT_EQ(run_on_ranks(scratch, 4, "granrun", line(scene, resumed, " --set scene.end_time_s=0.001")).code,
