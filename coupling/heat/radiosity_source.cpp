@@ -31,7 +31,8 @@ std::vector<std::int32_t> surfaces_kept(const Enclosure& enclosure, const WallPa
   std::iota(kept.begin(), kept.end(), 0);
   const auto is_sliver = [&](std::int32_t p) {
     const Wall& wall = enclosure.walls[static_cast<std::size_t>(patches.wall(p))];
-    return areas.area_m2[static_cast<std::size_t>(spheres + p)] < most_left_out * area(wall) &&
+    return areas.area_m2[enclosure.sphere_count() + static_cast<std::size_t>(p)] <
+               most_left_out * area(wall) &&
            sees_nothing(areas, spheres + p);
   };
   for (std::int32_t p = 0; p < patches.count(); ++p)
