@@ -123,7 +123,7 @@ case ${1:-} in
     files=("$@")
     if [[ ${1:-} == --fast ]]; then  # what everything else rests on
       build granrad_heat >/dev/null
-      mapfile -t files < <(sources | grep -E '^(dem/(base|bed)|coupling/heat)/.*\.cpp$')
+      mapfile -t files < <(sources | grep -E '^(dem/(base|bed|cover)|coupling/heat)/.*\.cpp$')
     else
       build all >/dev/null  # sources that the build makes
       ((${#files[@]})) || mapfile -t files < <(sources | grep '\.cpp$' | grep -v '^tests/bench')

@@ -137,7 +137,8 @@ std::int32_t WallPatches::divide(Polygon polygon, const Grid& grid, std::int32_t
     corners_.push_back(std::move(polygon));
     return ~(count() - 1);
   }
-  const double offset = low[k] + length[k] * (pieces[k] / 2) / pieces[k];
+  const int below_count = pieces[k] / 2;
+  const double offset = low[k] + length[k] * below_count / pieces[k];
   auto [below, above] = split(polygon, grid.direction[k], offset);
   const auto at = cuts_.size();
   cuts_.push_back({grid.direction[k], offset, {}});

@@ -114,7 +114,7 @@ CaseCommand other_command(const Study& study, const StudyCase& one, const fs::pa
   CaseCommand command;
   for (std::string word : one.options) {
     for (std::size_t at; (at = word.find("{folder}")) != std::string::npos;)
-      word.replace(at, 8, (folder / one.name).string());
+      word.replace(at, 8, fs::absolute(folder / one.name).string());
     for (std::size_t at; (at = word.find("{bin}")) != std::string::npos;)
       word.replace(at, 5, program("granrun").parent_path().string());
     command.words.push_back(word);
