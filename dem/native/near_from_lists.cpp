@@ -26,9 +26,9 @@ class Images {
   double near_[3]{1e300, 1e300, 1e300};
 };
 
-/// x, y, z and radius of each row in the box, and of the two idle rows that pad lists.
+/// x, y, z and radius of each row in the box; those of the idle rows that pad lists stay 0.
 AlignedVector<double> places_in_box(const Bed& bed, const Rows& rows, int threads) {
-  AlignedVector<double> place(4 * (rows.count + 2));
+  AlignedVector<double> place(rows.position.size());
 #pragma omp parallel for num_threads(threads) schedule(static)
   for (std::int64_t i = 0; i < rows.count; ++i) {
     const Vec3 p = wrapped_into_box(bed, rows.position_of(i));
