@@ -65,9 +65,9 @@ HeatPaths advance_temperatures(Bed& bed, const Conductances& conductances, doubl
 std::vector<double> mid_step_temperatures_K(const Bed& bed, const Conductances& conductances, double dt_s);
 
 /// Temperatures in the middle of the coming radiation interval, K, extrapolated with the heats held until now from where
-/// conduction alone leads by then: T_i + Q_i dt / (2 m c). A source asked for heats at these makes holding them second order in dt instead of
-/// first (error of a lone sphere after 2 s at dt = 0.01 s: 2e-7 instead of 1.1e-4), and it conserves energy
-/// as before, since it gives the heats of one set of temperatures. For dt up to explicit_radiation_fraction of
+/// conduction alone leads by then: T_i + Q_i dt / (2 m c). A source asked for heats at these makes holding them second
+/// order in dt instead of first (error of a lone sphere after 2 s at dt = 0.01 s: 2e-7 instead of 1.1e-4), and it conserves
+/// energy as before, since it gives the heats of one set of temperatures. For dt up to explicit_radiation_fraction of
 /// radiation_time_constant_s.
 std::vector<double> midway_temperatures_K(const Bed& bed, std::vector<double> conducted_K, double interval_s);
 

@@ -107,7 +107,8 @@ CaseCommand vfgen_command(const Study& study, const StudyCase& one, const fs::pa
   return command;
 }
 
-/// {folder} in a word is the folder of the case, {bin} that of our programs. The program is found beside the study, beside ours, or by PATH.
+/// {folder} in a word is the whole path of the case's folder, {bin} that of our programs. The program is found beside the
+/// study, beside ours, or by PATH.
 CaseCommand other_command(const Study& study, const StudyCase& one, const fs::path& folder) {
   if (one.options.empty())
     throw InputError("has no command; give options = [\"program\", \"argument\", ...]");

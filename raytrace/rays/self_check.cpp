@@ -121,8 +121,8 @@ SelfCheck self_check(const Enclosure& enclosure, const HitCounts& counts, double
   const double pairs = static_cast<double>(compared_pairs(counts));
   // Wilson and Hilferty: the cube root of chi^2 over n is normal, about 1 - 2 / 9 n with variance 2 / 9 n.
   const double root = 1 - 2 / (9 * pairs) + sigmas * std::sqrt(2 / (9 * pairs));
-  constexpr double counts_are_few = 1.2;
-  if (check.reciprocity_chi2 > counts_are_few * root * root * root)
+  constexpr double counts_are_few = 0.2;  // beside a normal law
+  if (check.reciprocity_chi2 > counts_are_few + root * root * root)
     fail(fmt::format("reciprocity chi^2 = {:.3f} over {:.0f} pairs", check.reciprocity_chi2, pairs));
   if (volume > 0 && std::abs(check.mean_chord_ratio - 1) > sigmas * chord_error + model_error)
     fail(fmt::format("mean free path is {:.5f} of 4 V / S", check.mean_chord_ratio));
