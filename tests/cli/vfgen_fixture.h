@@ -10,6 +10,7 @@
 
 #include "dem/base/files/hdf5_file.h"
 #include "raytrace/rays/view_factor_file.h"
+#include "tests/temporary_folder.h"
 
 namespace granrad::vfgen_test {
 
@@ -37,22 +38,14 @@ inline Outcome vfgen(const std::string& arguments) {
 
 class Vfgen : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(testing::TempDir()) / (std::string("granrad_vfgen_") + test->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
   std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return path(name);
+    return folder_.write(name, text).string();
   }
   std::string two_spheres() const {
     return write("two.csv", "x,y,z,radius\n0.002,0.002,0.002,0.0004\n0.0032,0.002,0.002,0.0004\n");
   }
-  fs::path folder_;
+  TemporaryFolder folder_;
 };
 
 inline void expect_says(const Outcome& outcome, int code, const std::string& part) {

@@ -127,7 +127,8 @@ TEST_F(Vfgen, InterruptLeavesNoFile) {
                            " -o " + path("x.h5") + " --rays 3e7 --box 0.01,0.004,0.004");
   EXPECT_NE(outcome.text.find("nothing was kept"), std::string::npos) << outcome.text;
   std::size_t files = 0;
-  for (const auto& entry : fs::directory_iterator(folder_)) files += entry.path().extension() != ".csv";
+  for (const auto& entry : fs::directory_iterator(folder_.path()))
+    files += entry.path().extension() != ".csv";
   EXPECT_EQ(files, 0u);
 }
 

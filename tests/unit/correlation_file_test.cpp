@@ -1,10 +1,9 @@
 // A table read back equals the table written, and a bad table is refused with every problem located.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "dem/base/error.h"
 #include "fit/correlation/correlation.h"
+#include "tests/temporary_folder.h"
 
 namespace granrad {
 namespace {
@@ -42,8 +41,7 @@ TEST(CorrelationFile, ReadsBackWhatWasWritten) {
   table.rows[1].statistics.closure_mean = -0.0123;
   table.rows[1].statistics.pw_standard_error = {1e-3, 2e-3, 3e-3, 4e-3};
   table.provenance = {{"source", "a test"}, {"note", "none"}};
-  const std::filesystem::path folder = testing::TempDir() + "/granrad_correlation_file";
-  std::filesystem::remove_all(folder);
+  const TemporaryFolder folder;
   write_correlation(folder / "t.toml", table);
   const auto back = read_correlation(folder / "t.toml");
   EXPECT_EQ(back.title, table.title);

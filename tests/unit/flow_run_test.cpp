@@ -8,13 +8,13 @@
 #include <fstream>
 
 #include "dem/base/error.h"
+#include "tests/temporary_folder.h"
 
 namespace granrad {
 namespace {
 
 class History : public testing::Test {
  protected:
-  void TearDown() override { std::filesystem::remove(file_); }
   /// Rows every 0.1 s to `end_s`, solid fraction by time.
   template <class Function>
   SteadyState judged(double end_s, Function&& phi, double residence_s, double start_s = 0) {
@@ -26,7 +26,8 @@ class History : public testing::Test {
     out.close();
     return judge_steadiness(file_, start_s);
   }
-  std::filesystem::path file_ = std::filesystem::path(testing::TempDir()) / "granrad_flow_run_history.csv";
+  TemporaryFolder folder_;
+  std::filesystem::path file_ = folder_ / "history.csv";
 };
 
 // A filling channel, exponential with 0.5 s: the drift between the quarters after 2 s is 3 %, after 4 s 0.4 %.

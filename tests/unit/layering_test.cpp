@@ -215,6 +215,22 @@ TEST(Layering, CauseAndAdviceAreJoinedByASemicolon) {
   EXPECT_GT(literals, 1000u);
 }
 
+// Tests run side by side, one a process: a file of a fixed name in the folder all share is another test's as well.
+// Temporary files stand in a TemporaryFolder. Planted: one test goes back to the shared folder.
+TEST(Layering, TestsShareNoTemporaryFile) {
+  static const std::regex shared(R"(\bTempDir\(|\btmpnam\(|"/tmp/)");
+  for (const auto& entry : fs::recursive_directory_iterator(source_dir / "tests")) {
+    if (entry.path().extension() != ".cpp" && entry.path().extension() != ".h") continue;
+    if (entry.path().filename() == "layering_test.cpp") continue;
+    std::ifstream in(entry.path());
+    std::size_t number = 0;
+    for (std::string line; std::getline(in, line);) {
+      ++number;
+      EXPECT_FALSE(std::regex_search(line, shared)) << entry.path() << ":" << number << ": " << line;
+    }
+  }
+}
+
 TEST(Layering, NoOtherFolderHoldsCode) {
   for (const auto& entry : fs::directory_iterator(source_dir)) {
     const std::string name = entry.path().filename();
