@@ -10,7 +10,7 @@ build=$root/build/release
 packages=(build-essential cmake ninja-build git python3
   libembree-dev libeigen3-dev libceres-dev libhdf5-dev libgtest-dev
   libcli11-dev libtomlplusplus-dev libfmt-dev nlohmann-json3-dev
-  libpng-dev libudunits2-dev librandom123-dev libboost-math-dev libmuparser-dev zlib1g-dev libzip-dev libpugixml-dev)
+  libpng-dev libudunits2-dev librandom123-dev libboost-dev libboost-math-dev libmuparser-dev zlib1g-dev libzip-dev libpugixml-dev)
 
 # Several processes on one case, and the engine on LIGGGHTS: optional in a build, part of the tests.
 liggghts_engine=(libliggghts-dev libopenmpi-dev openmpi-bin)

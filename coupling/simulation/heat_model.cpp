@@ -14,6 +14,10 @@
 #include "dem/io/saved_state.h"
 #include "dem/ranks/ranks.h"
 
+BOOST_HANA_ADAPT_STRUCT(granrad::RadiationTotals, updates, rays, lost_rays, implicit_updates, wall_heat_W,
+                        missed_W, error_squared_W2, closure_correction, reciprocity_rms, absolute_heat_W,
+                        limited_share);
+
 namespace granrad {
 
 namespace {
@@ -196,12 +200,12 @@ void HeatModel::advance(Bed& bed, double dt_s) {
 
 StateBlock HeatModel::save() const {
   StateBlock block;
-  save_values(radiation_, block, visit_totals);
+  save_values(radiation_, block);
   return block;
 }
 
 void HeatModel::load(const StateBlock& radiation, const StateBlock& ledger) {
-  restore_values(radiation_, radiation, visit_totals);
+  restore_values(radiation_, radiation);
   ledger_.load(ledger);
 }
 

@@ -28,21 +28,6 @@ struct RadiationTotals {
   std::int64_t implicit_updates = 0;  ///< those too long for the heats of their middle
 };
 
-/// What a restart needs of the totals, by the names in frames.
-inline constexpr auto visit_totals = [](auto& totals, auto integer, auto real) {
-  integer("updates", totals.updates);
-  integer("rays", totals.rays);
-  integer("lost_rays", totals.lost_rays);
-  integer("implicit_updates", totals.implicit_updates);
-  real("wall_heat_W", totals.wall_heat_W);
-  real("missed_W", totals.missed_W);
-  real("error_squared_W2", totals.error_squared_W2);
-  real("closure_correction", totals.closure_correction);
-  real("reciprocity_rms", totals.reciprocity_rms);
-  real("absolute_heat_W", totals.absolute_heat_W);
-  real("limited_share", totals.limited_share);
-};
-
 /// Heat of the bed: conduction and held radiation, one step at a time, with its ledger. Builds only
 /// what the scene needs: without radiation no source, without gas and contacts no pairs.
 class HeatModel {

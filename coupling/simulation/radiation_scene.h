@@ -9,13 +9,7 @@
 namespace granrad {
 
 enum class RadiationKind { none, paths, embree, lines, shading, correlation };
-inline constexpr ChoiceNames<RadiationKind::correlation> radiation_names(
-    {{{RadiationKind::none, "none"},
-      {RadiationKind::paths, "paths"},
-      {RadiationKind::embree, "embree"},
-      {RadiationKind::lines, "lines"},
-      {RadiationKind::shading, "shading"},
-      {RadiationKind::correlation, "correlation"}}});
+inline constexpr ChoiceNames<RadiationKind::correlation> radiation_names;
 inline const char* to_string(RadiationKind kind) {
   return radiation_names.of(kind);
 }

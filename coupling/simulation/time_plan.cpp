@@ -10,6 +10,9 @@
 #include "dem/base/error.h"
 #include "dem/io/saved_state.h"
 
+BOOST_HANA_ADAPT_STRUCT(granrad::TimePlan, origin_step, steps_per_tick, ticks_per_radiation, ticks_per_row,
+                        ticks_per_frame, origin_s, step_s);
+
 namespace granrad {
 
 namespace {
@@ -207,30 +210,16 @@ std::string end_note(const TimePlan& plan, double end_time_s) {
       end_time_s, plan.step_s, ends_s);
 }
 
-namespace {
-
-constexpr auto visit_plan = [](auto& plan, auto integer, auto real) {
-  integer("origin_step", plan.origin_step);
-  integer("steps_per_tick", plan.steps_per_tick);
-  integer("ticks_per_radiation", plan.ticks_per_radiation);
-  integer("ticks_per_row", plan.ticks_per_row);
-  integer("ticks_per_frame", plan.ticks_per_frame);
-  real("origin_s", plan.origin_s);
-  real("step_s", plan.step_s);
-};
-
-}  // namespace
-
 StateBlock TimePlan::save() const {
   StateBlock block;
-  save_values(*this, block, visit_plan);
+  save_values(*this, block);
   block.reals["asked"] = asked;
   return block;
 }
 
 TimePlan TimePlan::restored(const StateBlock& block, double end_time_s) {
   TimePlan plan;
-  restore_values(plan, block, visit_plan);
+  restore_values(plan, block);
   plan.asked = saved_reals(block, "asked");
   if (!(plan.step_s > 0) || plan.steps_per_tick < 1 || plan.ticks_per_row < 1 || plan.ticks_per_frame < 1 ||
       plan.ticks_per_radiation < 0)

@@ -12,12 +12,7 @@ class TomlDocument;
 
 /// What a case does. All but `command` are commands of our two programs.
 enum class StudyKind { run, validate, measure, trace, fit, command };
-inline constexpr ChoiceNames<StudyKind::command> study_kinds({{{StudyKind::run, "run"},
-                                                               {StudyKind::validate, "validate"},
-                                                               {StudyKind::measure, "measure"},
-                                                               {StudyKind::trace, "trace"},
-                                                               {StudyKind::fit, "fit"},
-                                                               {StudyKind::command, "command"}}});
+inline constexpr ChoiceNames<StudyKind::command> study_kinds;
 inline const char* to_string(StudyKind kind) {
   return study_kinds.of(kind);
 }

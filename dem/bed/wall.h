@@ -18,10 +18,7 @@ enum class WallRole {
   excluded,    ///< blocks rays, but is dropped before closure (the paper's four unheated walls)
 };
 
-inline constexpr ChoiceNames<WallRole::excluded> wall_roles({{{WallRole::isothermal, "isothermal"},
-                                                              {WallRole::adiabatic, "adiabatic"},
-                                                              {WallRole::open, "open"},
-                                                              {WallRole::excluded, "excluded"}}});
+inline constexpr ChoiceNames<WallRole::excluded> wall_roles;
 inline const char* to_string(WallRole role) {
   return wall_roles.of(role);
 }

@@ -9,6 +9,9 @@
 #include "dem/feed/plug_feed.h"
 #include "dem/io/saved_state.h"
 
+BOOST_HANA_ADAPT_STRUCT(granrad::FeedTotals, mass_in_kg, mass_out_kg, heat_in_J, heat_out_J,
+                        heat_capacity_out_J_K, inserted, removed, nudged, waiting);
+
 namespace granrad {
 
 namespace {
@@ -103,13 +106,13 @@ const FeedTotals& Feed::totals() const {
 
 StateBlock Feed::save() const {
   StateBlock state;
-  save_values(std::as_const(impl_->totals), state, FeedTotals::visit);
+  save_values(impl_->totals, state);
   std::visit([&](const auto& feed) { feed.save(state); }, impl_->feed);
   return state;
 }
 
 void Feed::load(const StateBlock& state) {
-  restore_values(impl_->totals, state, FeedTotals::visit);
+  restore_values(impl_->totals, state);
   std::visit([&](auto& feed) { feed.load(state); }, impl_->feed);
 }
 

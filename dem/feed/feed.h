@@ -15,19 +15,6 @@ struct FeedTotals {
   std::int64_t inserted = 0, removed = 0;
   std::int64_t nudged = 0;   ///< of the inserted: moved aside because their place was taken
   std::int64_t waiting = 0;  ///< due now, but without a free place so far (carried to the next update)
-
-  /// For saved_state.h.
-  static constexpr auto visit = [](auto& t, auto integer, auto real) {
-    real("mass_in_kg", t.mass_in_kg);
-    real("mass_out_kg", t.mass_out_kg);
-    real("heat_in_J", t.heat_in_J);
-    real("heat_out_J", t.heat_out_J);
-    real("heat_capacity_out_J_K", t.heat_capacity_out_J_K);
-    integer("inserted", t.inserted);
-    integer("removed", t.removed);
-    integer("nudged", t.nudged);
-    integer("waiting", t.waiting);
-  };
 };
 
 /// Inserts and removes particles between engine calls; takes out what comes into a [[remove]] place as well. Deterministic: what it does depends on the scene, the

@@ -1,4 +1,13 @@
 #pragma once
+#include <boost/hana/accessors.hpp>
+#include <boost/hana/adapt_struct.hpp>
+#include <boost/hana/first.hpp>
+#include <boost/hana/for_each.hpp>
+#include <boost/hana/second.hpp>
+#include <boost/hana/string.hpp>
+#include <boost/hana/tuple.hpp>
+#include <type_traits>
+
 #include "dem/io/snapshot.h"
 
 namespace granrad {
@@ -10,19 +19,29 @@ double saved_real(const StateBlock& block, const std::string& name);
 std::int64_t saved_integer(const StateBlock& block, const std::string& name);
 const std::vector<double>& saved_reals(const StateBlock& block, const std::string& name);
 
-/// Both ways of one list: `visit(values, integer, real)` calls integer(name, member) and real(name, member) for each
-/// member of `values` that a restart needs.
-template <class Values, class Visit>
-void save_values(const Values& values, StateBlock& block, Visit visit) {
-  visit(
-      values, [&](const char* name, std::int64_t value) { block.integers[name] = {value}; },
-      [&](const char* name, double value) { block.reals[name] = {value}; });
+/// Both ways of one list: the members of `values` that a restart needs, each under its own name, whole numbers among
+/// the integers. They are named once, by BOOST_HANA_ADAPT_STRUCT where this is called.
+template <class Values>
+void save_values(const Values& values, StateBlock& block) {
+  boost::hana::for_each(boost::hana::accessors<Values>(), [&](auto member) {
+    const char* const name = boost::hana::first(member).c_str();
+    const auto value = boost::hana::second(member)(values);
+    if constexpr (std::is_integral_v<decltype(value)>)
+      block.integers[name] = {value};
+    else
+      block.reals[name] = {value};
+  });
 }
-template <class Values, class Visit>
-void restore_values(Values& values, const StateBlock& block, Visit visit) {
-  visit(
-      values, [&](const char* name, std::int64_t& value) { value = saved_integer(block, name); },
-      [&](const char* name, double& value) { value = saved_real(block, name); });
+template <class Values>
+void restore_values(Values& values, const StateBlock& block) {
+  boost::hana::for_each(boost::hana::accessors<Values>(), [&](auto member) {
+    const char* const name = boost::hana::first(member).c_str();
+    auto& value = boost::hana::second(member)(values);
+    if constexpr (std::is_integral_v<std::remove_reference_t<decltype(value)>>)
+      value = saved_integer(block, name);
+    else
+      value = saved_real(block, name);
+  });
 }
 
 }  // namespace granrad

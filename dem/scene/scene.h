@@ -30,10 +30,7 @@ struct FeedSettings {
 };
 
 enum class EngineKind { native, liggghts, none, replay };
-inline constexpr ChoiceNames<EngineKind::replay> engine_names({{{EngineKind::native, "native"},
-                                                                {EngineKind::liggghts, "liggghts"},
-                                                                {EngineKind::none, "none"},
-                                                                {EngineKind::replay, "replay"}}});
+inline constexpr ChoiceNames<EngineKind::replay> engine_names;
 
 /// Whether the flow is computed from forces: its step has limits.
 inline bool computes_forces(EngineKind engine) {
