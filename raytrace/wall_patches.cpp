@@ -49,15 +49,17 @@ std::vector<std::size_t> planar_sets(const Wall& wall, const std::vector<WallFac
     while (root[t] != t) t = root[t] = root[root[t]];
     return t;
   };
-  std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> at_edge;
+  std::multimap<std::pair<std::int32_t, std::int32_t>, std::size_t>
+      at_edge;  // four meet where a sheet has two sides
   for (std::size_t t = 0; t < faces.size(); ++t)
     for (int c = 0; c < 3; ++c) {
       const auto edge = std::minmax(wall.triangles[t][c], wall.triangles[t][(c + 1) % 3]);
-      const auto [other, first] = at_edge.try_emplace(edge, t);
-      if (!first && dot(faces[t].normal, faces[other->second].normal) > parallel) {
-        const std::size_t one = find(t), two = find(other->second);
-        root[std::max(one, two)] = std::min(one, two);
-      }
+      for (auto [other, end] = at_edge.equal_range(edge); other != end; ++other)
+        if (dot(faces[t].normal, faces[other->second].normal) > parallel) {
+          const std::size_t one = find(t), two = find(other->second);
+          root[std::max(one, two)] = std::min(one, two);
+        }
+      at_edge.emplace(edge, t);
     }
   for (std::size_t t = 0; t < root.size(); ++t) root[t] = find(t);
   return root;
@@ -170,18 +172,23 @@ WallPatches::WallPatches(const std::vector<Wall>& walls, double longest_m, const
   first_tile_.push_back(tiles_.size());
 }
 
-const WallPatches::Tile& WallPatches::tile_at(std::size_t wall, const Vec3& point) const {
+const WallPatches::Tile& WallPatches::tile_at(std::size_t wall, const Vec3& point,
+                                              const Vec3& seen_from) const {
   const auto begin = tiles_.begin() + static_cast<std::ptrdiff_t>(first_tile_[wall]),
              end = tiles_.begin() + static_cast<std::ptrdiff_t>(first_tile_[wall + 1]);
   if (end - begin == 1) return *begin;
-  return *std::min_element(begin, end, [&](const Tile& a, const Tile& b) {
-    return distance_to(a.face, point) < distance_to(b.face, point);
-  });
+  constexpr double rounding = 1e-9;  // of a face: what shows its back is farther by that
+  const auto away_m = [&](const Tile& tile) {
+    const bool front = dot(tile.face.normal, seen_from - tile.face.vertices[0]) > 0;
+    const double extent_m = norm(tile.face.bounds.max - tile.face.bounds.min);
+    return distance_to(tile.face, point) + (front ? 0 : rounding * extent_m);
+  };
+  return *std::min_element(begin, end, [&](const Tile& a, const Tile& b) { return away_m(a) < away_m(b); });
 }
 
-std::int32_t WallPatches::at(std::int32_t wall, const Vec3& point) const {
+std::int32_t WallPatches::at(std::int32_t wall, const Vec3& point, const Vec3& seen_from) const {
   if (!is_cut(wall)) return first(wall);
-  std::int32_t node = tile_at(static_cast<std::size_t>(wall), point).root;
+  std::int32_t node = tile_at(static_cast<std::size_t>(wall), point, seen_from).root;
   while (node >= 0) {
     const Cut& cut = cuts_[static_cast<std::size_t>(node)];
     node = cut.child[dot(cut.normal, point) < cut.offset ? 0 : 1];

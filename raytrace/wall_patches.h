@@ -28,8 +28,9 @@ class WallPatches {
   const std::vector<Vec3>& corners(std::int32_t patch) const {
     return corners_[static_cast<std::size_t>(patch)];
   }
-  /// Patch of a point of a wall; a point beyond the edge belongs to a patch at that edge.
-  std::int32_t at(std::int32_t wall, const Vec3& point) const;
+  /// Patch of a point of a wall met from the point `seen_from`, which tells the sides of a thin sheet apart; a point
+  /// beyond the edge belongs to a patch at that edge.
+  std::int32_t at(std::int32_t wall, const Vec3& point, const Vec3& seen_from) const;
 
   /// The enclosure with a wall for each patch in place of its walls.
   Enclosure applied_to(const Enclosure& whole) const;
@@ -47,7 +48,7 @@ class WallPatches {
     WallFace face;
     std::int32_t root;
   };
-  const Tile& tile_at(std::size_t wall, const Vec3& point) const;
+  const Tile& tile_at(std::size_t wall, const Vec3& point, const Vec3& seen_from) const;
   std::int32_t divide(std::vector<Vec3> polygon, const Grid& grid, std::int32_t wall);
 
   std::vector<Cut> cuts_;

@@ -8,6 +8,7 @@
 
 #include "coupling/heat/heat_limits.h"
 #include "coupling/heat/heat_step.h"
+#include "coupling/simulation/radiation_check.h"
 #include "coupling/simulation/radiation_source.h"
 #include "dem/base/constants.h"
 #include "dem/base/error.h"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "coupling/simulation/radiation_scene.h"
+#include "coupling/simulation/radiation_source.h"
 #include "dem/base/error.h"
 #include "dem/engine_liggghts.h"
 #include "raytrace/paths/path_tracer.h"

@@ -6,7 +6,7 @@
 
 #include "coupling/heat/conduction.h"
 #include "coupling/simulation/case_inputs.h"
-#include "coupling/simulation/radiation_scene.h"
+#include "coupling/simulation/radiation_source.h"
 #include "dem/base/toml/toml_reader.h"
 #include "dem/scene/scene.h"
 

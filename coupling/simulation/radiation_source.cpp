@@ -8,13 +8,13 @@
 
 #include "coupling/heat/harmonic_source.h"
 #include "coupling/heat/radiosity_source.h"
+#include "coupling/simulation/radiation_check.h"
 #include "dem/base/error.h"
 #include "fit/correlation/correlation.h"
 #include "fit/correlation/correlation_source.h"
 #include "raytrace/lines/black_line_source.h"
 #include "raytrace/lines/line_plan.h"
 #include "raytrace/lines/line_sweep.h"
-#include "raytrace/mesh_check.h"
 #include "raytrace/paths/path_source.h"
 #include "raytrace/rays/enclosure_check.h"
 #include "raytrace/rays/view_factors.h"
@@ -24,8 +24,95 @@ namespace granrad {
 
 namespace {
 
-/// Probe rays that leave through closed walls: the rounding of edges.
-constexpr std::int64_t few_open = 2;
+constexpr double default_radiation_interval_s = 0.01;
+constexpr double default_heat_error = 0.01;
+constexpr double default_walks = 10000;  // paths, per update: 1 % noise in the wall heat needs about 1300
+constexpr double default_rays_per_particle = 2000;
+constexpr double default_line_ends_per_particle = 24000;  // 500 directions; lines are far cheaper than rays
+
+constexpr double default_rays_of_walls = 300;  // correlation with traced walls: of the walls, per particle
+constexpr double default_wall_rays_per_particle = 200;  // shading: sent by the walls
+constexpr double default_line_ends_for_moments = 4800;  // 100 directions in each replicate
+
+double default_rays(RadiationKind kind, int order) {
+  if (kind == RadiationKind::paths) return default_walks;
+  if (kind == RadiationKind::correlation) return default_rays_of_walls;
+  if (order > 0) return default_line_ends_for_moments;
+  if (kind == RadiationKind::shading) return default_wall_rays_per_particle;
+  return kind == RadiationKind::lines ? default_line_ends_per_particle : default_rays_per_particle;
+}
+
+/// Rays, or the error to choose them by.
+void read_effort(TomlTable& table, RadiationSettings& settings) {
+  const bool paths = settings.kind == RadiationKind::paths;
+  const auto rays = table.number_or_auto(
+      {"rays",
+       "walks per update (paths; auto: as many as error needs), rays or line ends per particle (others)",
+       "10000 (paths), 2000 (embree), 200 (shading, from the walls), 24000 (lines), 4800 (lines of order 1 to 3), 300 (traced wall rows)"},
+      {.min = paths ? 2.0 * path_batches : 1,
+       .max = 1e9,
+       .why = paths ? "walks per update" : "rays per particle"},
+      default_rays(settings.kind, settings.order), paths && table.has("error"));
+  settings.rays = rays.value_or(0);
+  const auto error = table.optional_number(
+      {"error",
+       "paths: relative standard error of the mean wall heat over the run, that rays = auto aims at"},
+      {.min = 1e-5, .max = 0.5, .why = "relative standard error"});
+  if (!rays) settings.error = error.value_or(default_heat_error);
+  if (!paths && !rays) table.problem("rays", "= \"auto\" is for source = paths; give a number");
+  if (error && rays && table.has("error"))
+    table.problem("error", "is used with source = paths and rays = \"auto\" only; leave one of them out");
+}
+
+}  // namespace
+
+RadiationSettings read_source(TomlTable table, const Scene& scene, RadiationKind otherwise) {
+  RadiationSettings settings;
+  settings.kind = table.choice(
+      {"source",
+       "paths: traced in the loop, exact; embree, lines, shading: view factors and radiosity; correlation: view factors from a table",
+       "paths; none without [radiation]"},
+      radiation_names, otherwise);
+  settings.table = table.file({"table", "correlation table, for source = correlation"},
+                              settings.kind == RadiationKind::correlation);
+  settings.traced_walls =
+      table.choice(
+          {"wall_rows", "of a correlation: exchange of the walls from the table, or by rays from the walls"},
+          {"table", "traced"}, "table") == "traced";
+  settings.order = static_cast<int>(table.integer(
+      {"order", "of the radiosity over each sphere, with lines: 0 uniform, 1 to 3 spherical harmonics"}, 0, 3,
+      0));
+  read_effort(table, settings);
+  settings.closure =
+      table.choice(
+          {"closure",
+           "how view factors are made to sum to one: reciprocal keeps A_i F_ij = A_j F_ji as well; row_sum is the paper's"},
+          {"reciprocal", "row_sum"}, "reciprocal") == "row_sum"
+          ? Closure::row_sum
+          : Closure::reciprocal;
+  settings.patches =
+      table.choice(
+          {"wall_patches",
+           "of adiabatic and grey walls (polygons and flat faces of meshes), with embree, lines, shading and traced wall rows: auto cuts them into patches with a radiosity each, whole gives each wall one"},
+          {"auto", "whole"}, "auto") == "auto";
+  settings.seed = static_cast<std::uint64_t>(table.integer({"seed", "of the rays"}, 0, 1LL << 62, 1));
+
+  check_source(table, settings, scene);
+  return settings;
+}
+
+RadiationSettings read_radiation(TomlTable table, const Scene& scene) {
+  RadiationSettings settings =
+      read_source(table, scene, table.present() ? RadiationKind::paths : RadiationKind::none);
+  const Key every{"every_s",
+                  "time between updates of the radiation; auto: by motion and the radiative time constant"};
+  const NumberRule positive{.unit = "s", .min = 0, .min_exclusive = true};
+  settings.every_s = table.number_or_auto(every, positive, default_radiation_interval_s).value_or(0);
+  return settings;
+}
+
+namespace {
+
 /// Independent sets of rays of an update: enough to know the error of the wall heat to a quarter.
 constexpr int wall_heat_replicates = 8;
 /// Share of the rays that may meet the back of a wall: rounding at edges. Each such ray is counted (lost_rays).
@@ -150,105 +237,6 @@ std::unique_ptr<ExchangeSource> make_radiation_source(const RadiationSettings& s
           settings.closure);
   }
   return nullptr;
-}
-
-std::optional<double> known_surroundings_K(const Scene& scene, std::optional<double> stated_K) {
-  if (stated_K) return stated_K;
-  std::optional<double> found;
-  for (const Wall& wall : scene.walls) {
-    if (wall.role != WallRole::open) continue;
-    if (found && *found != wall.temperature_K) return {};
-    found = wall.temperature_K;
-  }
-  return found;
-}
-
-namespace {
-
-/// Where rays leave, now or when a shutter has opened.
-std::string opening_problem(const Scene& scene, const Bed& bed, const EnclosureCheck& now) {
-  const auto said = [](const EnclosureCheck& check, const char* when) {
-    return advised(
-        fmt::format("the walls do not close{}: {} of {} probe rays leave, most from {}, and nothing "
-                    "says how warm it is out there",
-                    when, check.open, check.rays, check.leaves_most),
-        "give [surroundings] temperature_K, or close the walls");
-  };
-  if (now.open > few_open) return said(now, "");
-  double last_s = -infinity;  // walls that never open have opens_at_s = infinity
-  for (const Wall& wall : scene.walls)
-    if (std::isfinite(wall.opens_at_s)) last_s = std::max(last_s, wall.opens_at_s);
-  if (!(last_s > bed.time_s)) return "";
-  Bed opened = bed;
-  opened.time_s = last_s;
-  const EnclosureCheck then = check_enclosure(make_enclosure(opened, scene.region), bed.id);
-  return then.open > few_open ? said(then, " once the shutters are open") : "";
-}
-
-bool reflects(const Wall& wall) {
-  return wall.role == WallRole::adiabatic || (wall.role == WallRole::isothermal && wall.emissivity < 1);
-}
-
-/// Walls that reflect and would be cut into patches, but cannot: not those the scene asks to be whole.
-std::string whole_walls_note(const RadiationSettings& settings, const Enclosure& enclosure) {
-  if (!settings.patches || settings.closure != Closure::reciprocal || settings.kind == RadiationKind::paths)
-    return "";
-  const bool periodic = enclosure.periodic != std::array<bool, 3>{};
-  std::vector<char> cut;
-  for (const Wall& wall : enclosure.walls) cut.push_back(reflects(wall) && !periodic);
-  const WallPatches patches(enclosure.walls, infinity, cut);
-  std::string names;
-  for (std::size_t w = 0; w < cut.size(); ++w)
-    if (reflects(enclosure.walls[w]) && !patches.is_cut(static_cast<std::int32_t>(w)))
-      names += (names.empty() ? "" : ", ") + enclosure.walls[w].name;
-  if (names.empty()) return "";
-  return advised(fmt::format("one radiosity for all of each wall that reflects, {}: {}", names,
-                             periodic ? "walls of periodic boxes are not cut into patches"
-                                      : "meshes of more than 1000 flat faces are not cut into patches"),
-                 "where light falls on them unevenly, source = paths has no such error");
-}
-
-/// Sources of one radiosity for each wall: light that falls on one side of a sheet would leave from the other.
-std::vector<std::string> sheets_that_join_their_sides(const Enclosure& enclosure) {
-  std::vector<std::string> problems;
-  for (const Wall& wall : enclosure.walls) {
-    if (reflects(wall) && has_two_sides(wall))
-      problems.push_back(advised(
-          fmt::format(
-              "wall {} has two sides and reflects (with one radiosity for both, what falls on the one "
-              "would leave from the other)",
-              wall.name),
-          "use source = paths, or a wall for each side"));
-  }
-  return problems;
-}
-
-}  // namespace
-
-std::vector<std::string> check_radiation(const RadiationSettings& settings, const Scene& scene,
-                                         const Bed& bed, std::optional<double> surroundings_K) {
-  if (settings.kind == RadiationKind::none) return {};
-  const Enclosure enclosure = make_enclosure(bed, scene.region);
-  EnclosureCheck check = check_enclosure(enclosure, bed.id);
-  if (auto note = whole_walls_note(settings, enclosure); !note.empty())
-    check.notes.push_back(std::move(note));
-  std::vector<std::string> problems = check.problems;
-  if (!known_surroundings_K(scene, surroundings_K))
-    if (const auto problem = opening_problem(scene, bed, check); !problem.empty())
-      problems.push_back(problem);
-  if (settings.kind == RadiationKind::embree || settings.kind == RadiationKind::shading)
-    for (auto& problem : sheets_that_join_their_sides(enclosure)) problems.push_back(std::move(problem));
-  if (!problems.empty()) throw InputError(problems);
-  if (bed.size() == 0) return check.notes;
-  if (settings.kind == RadiationKind::correlation)
-    correlation_exchange_areas(read_correlation(settings.table), enclosure, {});
-  if (settings.kind == RadiationKind::shading) refuse_what_shading_cannot_serve(enclosure, settings.rays);
-  if (settings.kind == RadiationKind::lines) {
-    const LineOptions options = line_options(settings, 0, 1);
-    refuse_wasted_lines(LineScene(enclosure, options.lines_per_disc), options, options.directions);
-    sweep_exchange_areas(enclosure, {.directions = 1, .lines_per_disc = 1, .replicates = 2});
-  }
-  return check.notes;
 }
 
 RadiativeState radiative_state(const Bed& bed, const std::vector<double>& temperature_K,

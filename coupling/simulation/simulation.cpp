@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "coupling/heat/heat_step.h"
+#include "coupling/simulation/radiation_check.h"
 #include "coupling/simulation/radiation_source.h"
 #include "dem/base/error.h"
 #include "dem/base/files/text_file.h"

@@ -7,6 +7,7 @@
 
 #include "coupling/simulation/flow.h"
 #include "coupling/simulation/heat_model.h"
+#include "coupling/simulation/radiation_check.h"
 #include "coupling/simulation/radiation_source.h"
 #include "coupling/validate/validate_report.h"
 #include "dem/base/error.h"

@@ -104,7 +104,7 @@ class Assembly {
     if (surface == scene_.open_surface) return end;
     const auto wall = surface - spheres;
     const Vec3 point = geometry.point(cell, geometry.depth(surface, cell, side)) + scene_.middle;
-    end.element = spheres + patches_.at(wall, point);
+    end.element = spheres + patches_.at(wall, point, point);
     return end;
   }
 

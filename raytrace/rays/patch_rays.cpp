@@ -20,7 +20,8 @@ RayEnd PatchRays::follow(const EmittedRay& ray) const {
   const End end = tracer_.first_end(origin, direction, from, ray.start.normal);
   if (!patches_ || end.surface < spheres) return {end.surface, end.distance_m};
   if (end.surface == open) return {spheres + patches_->count(), end.distance_m};
-  return {spheres + patches_->at(end.surface - spheres, origin + end.distance_m * direction), end.distance_m};
+  return {spheres + patches_->at(end.surface - spheres, origin + end.distance_m * direction, origin),
+          end.distance_m};
 }
 
 HitCounts PatchRays::trace_walls(double rays, std::uint64_t seed, int threads) const {

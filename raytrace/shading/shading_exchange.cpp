@@ -173,7 +173,7 @@ class WallRows {
   /// The wall, or of one that is cut the patch below a point.
   std::size_t surface_of(std::size_t wall, const Vec3& point) const {
     const auto w = static_cast<std::int32_t>(wall);
-    return spheres_ + (patches_ ? static_cast<std::size_t>(patches_->at(w, point)) : wall);
+    return spheres_ + (patches_ ? static_cast<std::size_t>(patches_->at(w, point, point)) : wall);
   }
 
   std::size_t spheres_, walls_, open_;

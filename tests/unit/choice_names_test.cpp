@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "coupling/simulation/radiation_scene.h"
+#include "coupling/simulation/radiation_source.h"
 #include "coupling/study/study.h"
 #include "dem/bed/wall.h"
 #include "dem/scene/scene.h"

@@ -62,7 +62,7 @@ TEST(WallPatches, TileEveryWallAndFindTheirPoints) {
           const double share = uniform(random);
           point += share * c, total += share;
         }
-        const std::int32_t found = patches.at(w, point * (1 / total));
+        const std::int32_t found = patches.at(w, point * (1 / total), point * (1 / total) + normal);
         EXPECT_EQ(patches.wall(found), w);
         EXPECT_TRUE(inside(patches.corners(found), normal, point * (1 / total)));
       }
@@ -92,10 +92,24 @@ TEST(WallPatches, AVesselOfOneMeshIsCutFaceByFace) {
     sum += polygon_area(corners);
     Vec3 middle{};
     for (const Vec3& c : corners) middle += (1.0 / static_cast<double>(corners.size())) * c;
-    EXPECT_EQ(patches.at(0, middle), p);
+    EXPECT_EQ(patches.at(0, middle, {0.5, 1, 1.5}), p);
     EXPECT_GT(dot(polygon_normal(corners), Vec3{0.5, 1, 1.5} - middle), 0) << "faces in";
   }
   EXPECT_NEAR(sum, 22, 1e-9);
+}
+
+TEST(WallPatches, TheSidesOfASheetAreToldApartByWhereTheyAreSeenFrom) {
+  Wall sheet;
+  sheet.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 2, 1}, {0, 3, 2}};
+  const WallPatches patches({sheet}, 0.5);
+  EXPECT_EQ(patches.count(), 8);
+  for (const double side : {-1.0, 1.0})
+    for (const Vec3& point : {Vec3{0.2, 0.3, 0}, Vec3{0.7, 0.3, 1e-17}, Vec3{0.7, 0.9, -1e-17}}) {
+      const auto p = patches.at(0, point, {5, 0.1, side});
+      EXPECT_GT(side * polygon_normal(patches.corners(p)).z, 0);
+      EXPECT_TRUE(inside(patches.corners(p), polygon_normal(patches.corners(p)), point));
+    }
 }
 
 TEST(WallPatches, ABentFaceOfAMeshIsCutByTriangles) {
@@ -104,7 +118,7 @@ TEST(WallPatches, ABentFaceOfAMeshIsCutByTriangles) {
   corner.triangles = {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {3, 4, 7}, {3, 7, 6}};
   const WallPatches patches({corner}, 10);
   EXPECT_EQ(patches.count(), 6);
-  EXPECT_EQ(patches.at(0, {0.9, 0.1, 0}), 0);
+  EXPECT_EQ(patches.at(0, {0.9, 0.1, 0}, {0.9, 0.1, 1}), 0);
 }
 
 TEST(WallPatches, LeaveFineMeshesAndOthersWhole) {
@@ -121,7 +135,7 @@ TEST(WallPatches, LeaveFineMeshesAndOthersWhole) {
     EXPECT_EQ(patches->count(), 2);
     for (std::int32_t w : {0, 1}) {
       EXPECT_FALSE(patches->is_cut(w));
-      EXPECT_EQ(patches->at(w, {0.5, 0.5, 0}), w);
+      EXPECT_EQ(patches->at(w, {0.5, 0.5, 0}, {0.5, 0.5, 1}), w);
     }
   }
   Enclosure enclosure;
