@@ -261,7 +261,7 @@ void ContactLists::rebuild(Rows& rows, const Model& model, const Periods& period
 }
 
 void ContactLists::refresh(Rows& rows, const Model& model, const Periods& periods, const Bed& bed,
-                           const WallSurface& surface) {
+                           const WallSurface& surface, std::int64_t steps) {
 #pragma omp parallel num_threads(threads())
   {
     const int t = omp_get_thread_num();
@@ -272,6 +272,7 @@ void ContactLists::refresh(Rows& rows, const Model& model, const Periods& period
     }
     share.walls.refresh(surface, rows, periods, bed.materials, model.constants,
                         static_cast<std::int32_t>(rows.count + 2 * t));
+    share.rows.choose(share.range, share.own, share.cross, share.walls, rows, model.move, steps);
   }
 }
 
@@ -298,7 +299,7 @@ std::int64_t ContactLists::prepare(Rows& rows, Model& model, const Periods& peri
   // A fast particle shortens the life of the list.
   while (steps > 1 && slack.least_m() < 0) slack = measure_slack(rows, steps /= 2);
   anticipate(rows, model, periods, surface, steps);
-  refresh(rows, model, periods, bed, surface);
+  refresh(rows, model, periods, bed, surface, steps);
   life_ = promised_ = steps;
   return life_;
 }

@@ -88,7 +88,7 @@ class ContactLists {
   void choose_skins(const Rows& rows, double largest_radius, std::int64_t steps);
   void find_walls(const Rows& rows, const Periods& periods, const WallSurface& surface);
   void refresh(Rows& rows, const Model& model, const Periods& periods, const Bed& bed,
-               const WallSurface& surface);
+               const WallSurface& surface, std::int64_t steps);
   Vec3 drift() const { return mean_velocity_ * (step_s_ * double(steps_since_sort_)); }
 
   const Kernels& kernels_;

@@ -78,23 +78,68 @@ struct KernelBodies {
     return c.varied.columns ? plane_loop<true>(r, c, p, k) : plane_loop<false>(r, c, p, k);
   }
 
-  static bool move(const RowView& rows, std::int64_t begin, std::int64_t end, const MoveConstants& m,
+  static bool move(const RowView& rows, const std::int32_t* list, std::int64_t count, const MoveConstants& m,
                    bool last) {
     const auto gravity = S::row_load(m.gravity_kick);
     bool too_fast = false;
-    for (std::int64_t i = begin; i < end; ++i) {
+    for (std::int64_t k = 0; k < count; ++k) {
+      const std::int64_t i = list[k];
       const auto push =
           S::row_multiply(S::row_take(rows.force + 8 * i), S::row_load(m.kick + m.kick_stride * i));
       const auto v = S::row_add(S::row_add(S::row_load(rows.velocity + 8 * i), push), gravity);
       S::row_store(rows.velocity + 8 * i, v);
       too_fast |= S::row_too_fast(v, m.reference + 4 * i);
-      S::row_drift(rows.position + 4 * i, v, m.half_step_s, !last);
+      double* position = rows.position + 4 * i;
+      S::place_store(position, S::place_drifted(S::place_load(position), v, m.half_step_s, !last));
       if (rows.mixed) {
         S::row_narrow(rows.mixed[i].velocity, v);
-        S::copy_position(rows.position + 4 * i, rows.mixed[i].position);
+        S::copy_position(position, rows.mixed[i].position);
       }
     }
     return too_fast;
+  }
+
+  /// `rows_at_once` rows, whose sums do not wait for each other. A velocity is added to zero once, as `move` adds
+  /// a force of zero: no zero is negative from there on.
+  template <int rows_at_once, bool falls>
+  GRANRAD_INLINE void fly_together(const RowView& rows, const std::int32_t* list, const MoveConstants& m,
+                                   std::int64_t steps, bool last) {
+    alignas(64) constexpr double none[8] = {};
+    const auto gravity = S::row_load(m.gravity_kick), zero = S::row_load(none);
+    typename S::Row v[rows_at_once];
+    typename S::Place p[rows_at_once];
+    for (int r = 0; r < rows_at_once; ++r) {
+      v[r] = S::row_add(S::row_load(rows.velocity + 8 * std::int64_t(list[r])), zero);
+      p[r] = S::place_load(rows.position + 4 * std::int64_t(list[r]));
+    }
+    const auto step = [&](bool twice) {
+      for (int r = 0; r < rows_at_once; ++r) {
+        if (falls) v[r] = S::row_add(v[r], gravity);
+        p[r] = S::place_drifted(p[r], v[r], m.half_step_s, twice);
+      }
+    };
+    for (std::int64_t k = 1; k < steps; ++k) step(true);
+    step(!last);
+    for (int r = 0; r < rows_at_once; ++r) {
+      S::row_store(rows.velocity + 8 * std::int64_t(list[r]), v[r]);
+      S::place_store(rows.position + 4 * std::int64_t(list[r]), p[r]);
+    }
+  }
+  template <bool falls>
+  static void fly_loop(const RowView& rows, const std::int32_t* list, std::int64_t count,
+                       const MoveConstants& m, std::int64_t steps, bool last) {
+    constexpr int together = 8;
+    std::int64_t k = 0;
+    for (; k + together <= count; k += together)
+      fly_together<together, falls>(rows, list + k, m, steps, last);
+    for (; k < count; ++k) fly_together<1, falls>(rows, list + k, m, steps, last);
+  }
+  static void fly(const RowView& rows, const std::int32_t* list, std::int64_t count, const MoveConstants& m,
+                  std::int64_t steps, bool last) {
+    bool falls = false;
+    for (double g : m.gravity_kick) falls |= g != 0;
+    falls ? fly_loop<true>(rows, list, count, m, steps, last)
+          : fly_loop<false>(rows, list, count, m, steps, last);
   }
 
   template <bool periodic>
@@ -156,6 +201,7 @@ struct KernelBodies {
             mixed_first,
             plane_contacts,
             move,
+            fly,
             select_close,
             find_near,
             find_close};

@@ -109,10 +109,14 @@ struct Kernels {
   PairKernel mixed_contacts, mixed_contacts_first;
   /// `second` numbers planes.
   WorstContact (*plane_contacts)(const RowView&, const ContactView&, const PlaneView&, const StepConstants&);
-  /// v += F dt/m + g dt, omega likewise (and `mixed`), x += v dt/2, forces cleared, rows [begin, end).
+  /// v += F dt/m + g dt, omega likewise (and `mixed`), x += v dt/2, forces cleared, `count` rows of `list`.
   /// Unless `last`, x moves another half step, to the middle of the next one. True if a speed limit is broken
   /// (or not a number).
-  bool (*move)(const RowView&, std::int64_t begin, std::int64_t end, const MoveConstants&, bool last);
+  bool (*move)(const RowView&, const std::int32_t* list, std::int64_t count, const MoveConstants&, bool last);
+  /// The same bits as `steps` (at least one) calls of `move`, for rows without a force that break no limit; leaves
+  /// `mixed` as it is. `last` holds of the last step.
+  void (*fly)(const RowView&, const std::int32_t* list, std::int64_t count, const MoveConstants&,
+              std::int64_t steps, bool last);
   /// Keeps the pairs closer than the sum of their reaches and of what they move towards each other in life_s:
   /// rows into `first`, `second`, their numbers into `source`. `count` is padded to a multiple of 8. Returns
   /// how many; writes up to 8 entries beyond.

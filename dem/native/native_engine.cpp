@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 
 #include "dem/base/clock.h"
 #include "dem/base/error.h"
@@ -140,16 +141,20 @@ std::int64_t NativeEngine::Impl::run(std::int64_t steps, bool finishes, bool& li
 #pragma omp master
     rows.fill_mixed(rows.count, static_cast<std::int64_t>(rows.mixed.size()));  // the idle rows
     barrier.wait();
-    for (std::int64_t k = 0; k < steps && !stop; ++k) {
+    std::int64_t k = 0;
+    for (; k < steps && !stop; ++k) {
       worst.include(first_contacts(view, share.cross.view(), model.constants));
       worst.include(
           share.walls.add_forces(kernels, *surface, rows, *periods, model.constants, transfer.materials()));
       if (shared) barrier.wait();  // now no one else needs these rows where they are
       bool& too_fast = share.too_fast[k & 1];
       too_fast = false;
-      std::int64_t moved = share.range.begin;
-      const auto move_rows_before = [&](std::int64_t end) {
-        too_fast |= kernels.move(view, moved, end, model.move, finishes && k + 1 == steps);
+      const auto& bound = share.rows.bound();
+      std::int64_t moved = 0;
+      const auto move_rows_before = [&](std::int64_t row) {
+        const auto end = share.rows.bound_before(row, moved);
+        too_fast |=
+            kernels.move(view, bound.data() + moved, end - moved, model.move, finishes && k + 1 == steps);
         moved = end;
       };
       for (std::int64_t b = 0; b < share.own.blocks(); ++b) {
@@ -162,6 +167,8 @@ std::int64_t NativeEngine::Impl::run(std::int64_t steps, bool finishes, bool& li
 #pragma omp master
       done = k + 1, limit_broken = stop;
     }
+    const auto& free = share.rows.free();
+    kernels.fly(view, free.data(), std::ssize(free), model.move, k, finishes && k == steps);
     share.worst = worst;
   }
   return done;

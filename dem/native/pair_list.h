@@ -86,6 +86,12 @@ class PairList {
   }
   void clear_touches() { std::fill(touch_sum_.begin(), touch_sum_.end(), 0.0), left_.clear(); }
 
+  /// Calls visit(i, j) for the rows of every tight pair.
+  template <class Visit>
+  void visit_tight(Visit visit) const {
+    for (std::int64_t k = 0; k < tight_count_; ++k) visit(first_[k], second_[k]);
+  }
+
   std::int64_t near_count() const { return near_count_; }
   std::int64_t tight_count() const { return tight_count_; }
   /// Contacts that touch now: tight pairs with a spring.

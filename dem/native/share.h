@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "dem/native/free_rows.h"
 #include "dem/native/pair_list.h"
 #include "dem/native/wall_contacts.h"
 
@@ -15,6 +16,7 @@ struct Share {
   WallContacts::Range range{0, 0};
   PairList own, cross;
   WallContacts walls;
+  FreeRows rows;
   std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> outbox;  ///< [owner] twins of cross pairs
   WorstContact worst;
   bool too_fast[2] = {false, false};  ///< in the last even and the last odd step

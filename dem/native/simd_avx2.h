@@ -147,11 +147,13 @@ struct Avx2Pack : LawInDouble<Avx2Pack> {
     const __m256d from = _mm256_load_pd(reference), change = abs(_mm256_sub_pd(r.low, from));
     return _mm256_movemask_pd(_mm256_cmp_pd(change, _mm256_permute4x64_pd(from, 0xff), _CMP_NLE_UQ)) & 7;
   }
-  GRANRAD_INLINE void row_drift(double* position, const Row& r, double half, bool twice) {
+  using Place = __m256d;
+  GRANRAD_INLINE Place place_load(const double* p) { return _mm256_load_pd(p); }
+  GRANRAD_INLINE void place_store(double* p, Place place) { _mm256_store_pd(p, place); }
+  GRANRAD_INLINE Place place_drifted(Place place, const Row& r, double half, bool twice) {
     const __m256d move = _mm256_mul_pd(_mm256_setr_pd(half, half, half, 0.0), r.low);
-    __m256d p = _mm256_add_pd(_mm256_load_pd(position), move);
-    if (twice) p = _mm256_add_pd(p, move);
-    _mm256_store_pd(position, p);
+    place = _mm256_add_pd(place, move);
+    return twice ? _mm256_add_pd(place, move) : place;
   }
 
   GRANRAD_INLINE std::int64_t find_close(const float* x, const float* y, const float* z, const float* reach,

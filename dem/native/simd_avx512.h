@@ -143,11 +143,13 @@ struct Avx512Pack : LawInDouble<Avx512Pack> {
     const __m256d change = _mm256_andnot_pd(_mm256_set1_pd(-0.0), _mm256_sub_pd(v, from));
     return _mm256_cmp_pd_mask(change, _mm256_permute4x64_pd(from, 0xff), _CMP_NLE_UQ) & 7;
   }
-  GRANRAD_INLINE void row_drift(double* position, Row r, double half, bool twice) {
+  using Place = __m256d;
+  GRANRAD_INLINE Place place_load(const double* p) { return _mm256_load_pd(p); }
+  GRANRAD_INLINE void place_store(double* p, Place place) { _mm256_store_pd(p, place); }
+  GRANRAD_INLINE Place place_drifted(Place place, Row r, double half, bool twice) {
     const __m256d move = _mm256_mul_pd(_mm256_setr_pd(half, half, half, 0.0), _mm512_castpd512_pd256(r));
-    __m256d p = _mm256_add_pd(_mm256_load_pd(position), move);
-    if (twice) p = _mm256_add_pd(p, move);
-    _mm256_store_pd(position, p);
+    place = _mm256_add_pd(place, move);
+    return twice ? _mm256_add_pd(place, move) : place;
   }
 
   GRANRAD_INLINE std::int64_t find_close(const float* x, const float* y, const float* z, const float* reach,

@@ -113,13 +113,22 @@ struct ScalarPack : LawInDouble<ScalarPack> {
     for (int k = 0; k < 3; ++k) fine &= __builtin_fabs(r.lane[k] - reference[k]) <= reference[3];
     return !fine;
   }
-  /// position += half v, `twice` or once; rounded each time.
-  GRANRAD_INLINE void row_drift(double* position, const Row& r, double half, bool twice) {
+  /// A row of four numbers, of which three are a place.
+  struct Place {
+    double lane[4];
+  };
+  GRANRAD_INLINE Place place_load(const double* p) { return {{p[0], p[1], p[2], p[3]}}; }
+  GRANRAD_INLINE void place_store(double* p, const Place& place) {
+    for (int k = 0; k < 4; ++k) p[k] = place.lane[k];
+  }
+  /// place + half v, `twice` or once; rounded each time.
+  GRANRAD_INLINE Place place_drifted(Place place, const Row& r, double half, bool twice) {
     for (int k = 0; k < 3; ++k) {
       const double move = half * r.lane[k];
-      position[k] += move;
-      if (twice) position[k] += move;
+      place.lane[k] += move;
+      if (twice) place.lane[k] += move;
     }
+    return place;
   }
 
   /// Appends to out the numbers first + q of those q < count (from memory, in packs) that are closer than

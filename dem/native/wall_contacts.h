@@ -63,6 +63,12 @@ class WallContacts {
   };
   /// What find_near found, in ascending (row, facet).
   const std::vector<Near>& near() const { return near_; }
+  /// Calls visit(row) for every row that may touch a wall before the next refresh, once or more.
+  template <class Visit>
+  void visit_rows(Visit visit) const {
+    for (std::int64_t k = 0; k < plane_count_; ++k) visit(rows_[k]);
+    for (const auto& b : borders_) visit(b.row);
+  }
   std::int64_t contact_count() const { return plane_count_ + static_cast<std::int64_t>(borders_.size()); }
 
  private:
