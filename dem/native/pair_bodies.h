@@ -7,8 +7,10 @@
 namespace granrad::native {
 
 inline constexpr double quarter_pi = 0.78539816339744830962;
-inline constexpr std::int64_t chunk =
-    32;  ///< contacts between gathering and scattering; their data stays in L1
+/// Contacts between asking the caches for rows, or for springs, and reading them.
+inline constexpr std::int64_t rows_ahead = 32, springs_ahead = 64;
+/// Packs between gathering and the law, and between the law and scattering; their data stays in L1.
+inline constexpr std::int64_t lead = 2;  // a power of two
 
 /// S works the law in its own numbers V (of Lane). Differences of positions, the test for touching and the
 /// sums are double in any case, in S::halves packs of D = S::Wide (one, S itself, in double precision).
@@ -19,7 +21,6 @@ struct PairBodies {
   using Lane = typename S::Lane;
   using Law = ContactLaw::Values<V>;
   static constexpr int W = S::width, H = S::halves;
-  static constexpr std::int64_t packs = chunk / W;
 
   struct Gathered {
     V away[3], square, excess, velocity[3], spin[3], other_spin[3];
@@ -176,38 +177,51 @@ struct PairBodies {
     }
   }
 
-  /// In chunks of 32 contacts: gather the rows, work the law, scatter the forces. Three short loops keep the
-  /// loads, the arithmetic and the read-modify-writes of different packs from waiting for each other.
+  template <bool periodic, bool varied, bool first_only>
+  GRANRAD_INLINE void gather(const RowView& rows, const ContactView& c, const StepConstants& constants,
+                             std::int64_t at, Gathered& in, bool& live) {
+    const auto* motion = S::motion(rows);
+    const auto* springs = S::springs(c);
+    const std::int32_t *i = c.first + at, *j = c.second + at;
+    for (int l = 0; l < W; ++l) {
+      const std::int64_t ahead = j[rows_ahead + l];
+      S::prefetch_row(rows, ahead);
+      if (!first_only) D::prefetch(rows.force + 8 * ahead);
+    }
+    for (int a = 0; a < 3; ++a) D::prefetch(springs[a] + at + springs_ahead);
+    gather_positions<periodic, varied>(rows, c, constants, at, in);
+    live = S::any(S::less(V{}, in.excess));
+    if (!live) return;
+    if constexpr (varied)
+      S::pair_velocities_apart(motion, i, j, in.velocity, in.spin, in.other_spin);
+    else
+      S::pair_velocities(motion, i, j, in.velocity, in.spin);
+  }
+
+  /// Rows are gathered `lead` packs before the law is worked on them, and the forces scattered as many behind: what
+  /// waits for memory, for a root and for the sums before it belongs to different packs, so that all three go on at
+  /// once.
   template <bool periodic, bool varied, bool first_only>
   static WorstContact loop(const RowView& rows, const ContactView& c, const StepConstants& constants) {
-    Gathered in[packs];
-    Scattered out[packs];
+    Gathered in[2 * lead];
+    Scattered out[2 * lead];
     const Law uniform = broadcast(constants.pair);
-    const auto* motion = S::motion(rows);
     Worst worst;
-    for (std::int64_t begin = 0; begin < c.count; begin += chunk) {
-      const std::int64_t left = (c.count - begin) / W, n = left < packs ? left : packs;
-      for (std::int64_t q = 0; q < n; ++q) {
-        const std::int64_t at = begin + q * W;
-        const std::int32_t *i = c.first + at, *j = c.second + at;
-        for (int l = 0; l < W; ++l) {
-          const std::int64_t ahead = j[chunk + l];
-          S::prefetch_row(rows, ahead);
-          if (!first_only) D::prefetch(rows.force + 8 * ahead);
-        }
-        gather_positions<periodic, varied>(rows, c, constants, at, in[q]);
-        out[q].live = S::any(S::less(V{}, in[q].excess));
-        if (!out[q].live) continue;
-        if constexpr (varied)
-          S::pair_velocities_apart(motion, i, j, in[q].velocity, in[q].spin, in[q].other_spin);
-        else
-          S::pair_velocities(motion, i, j, in[q].velocity, in[q].spin);
-      }
-      for (std::int64_t q = 0; q < n; ++q)
-        contact<varied, first_only>(c, constants, uniform, begin + q * W, in[q], out[q], worst);
-      for (std::int64_t q = 0; q < n; ++q)
-        if (out[q].live) scatter<varied, first_only>(rows, c, begin + q * W, out[q]);
+    const std::int64_t packs = c.count / W, first = packs < lead ? packs : lead;
+    const auto slot = [](std::int64_t p) { return p & (2 * lead - 1); };
+    const auto gather_pack = [&](std::int64_t p) __attribute__((always_inline)) {
+      gather<periodic, varied, first_only>(rows, c, constants, p * W, in[slot(p)], out[slot(p)].live);
+    };
+    const auto scatter_pack = [&](std::int64_t p) __attribute__((always_inline)) {
+      if (out[slot(p)].live) scatter<varied, first_only>(rows, c, p * W, out[slot(p)]);
+    };
+    for (std::int64_t p = 0; p < first; ++p) gather_pack(p);
+    for (std::int64_t p = 0; p < packs; ++p) {
+      if (p >= lead) scatter_pack(p - lead);
+      if (p + lead < packs) gather_pack(p + lead);
+      contact<varied, first_only>(c, constants, uniform, p * W, in[slot(p)], out[slot(p)], worst);
     }
+    for (std::int64_t p = packs - first; p < packs; ++p) scatter_pack(p);
     const double units = varied ? 1 : constants.scales.force;
     return {largest(worst.beyond), units * largest(worst.force)};
   }
