@@ -233,6 +233,7 @@ Enclosure make_enclosure(const Bed& bed, const Box& region) {
     enclosure.centre_m.push_back(centre);
     enclosure.radius_m.push_back(bed.radius_m[i]);
     enclosure.particle.push_back(static_cast<std::int32_t>(i));
+    enclosure.material.push_back(bed.material[i]);
   }
   const auto kept = walls_of_region(bed, region, tolerance);
   for (std::size_t w = 0; w < bed.walls.size(); ++w) {

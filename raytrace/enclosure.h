@@ -19,6 +19,8 @@ struct Enclosure {
   std::array<bool, 3> periodic{};
   Box box;                           ///< periods, where periodic
   std::vector<std::int32_t> wall{};  ///< index in Bed::walls of each wall
+  std::vector<std::int32_t>
+      material{};  ///< index in Bed::materials of each sphere, of an enclosure made of a Bed
   /// Solid fraction of the region the enclosure was made for (dem/bed/solid_fraction.h), spheres across its
   /// faces counted with the part inside; 0: not known (no region, or one that is larger than the walls).
   double solid_fraction = 0;

@@ -56,7 +56,7 @@ void add_conduction(const Bed& bed, const Slab& slab, const ConductionSettings& 
 std::vector<double> emissivities(const Bed& bed, const Slab& slab) {
   std::vector<double> emissivity(slab.enclosure.surface_count(), 0.0);
   for (std::size_t k = 0; k < slab.spheres(); ++k)
-    emissivity[k] = bed.materials.at(bed.material[slab.enclosure.particle[k]]).emissivity;
+    emissivity[k] = bed.materials.at(slab.enclosure.material[k]).emissivity;
   for (const auto plate : slab.plate)
     emissivity[plate] = slab.enclosure.walls[plate - slab.spheres()].emissivity;
   return emissivity;

@@ -242,8 +242,8 @@ std::unique_ptr<ExchangeSource> make_radiation_source(const RadiationSettings& s
 RadiativeState radiative_state(const Bed& bed, const std::vector<double>& temperature_K,
                                const Enclosure& enclosure, double surroundings_K) {
   RadiativeState state;
-  for (std::int32_t i : enclosure.particle)
-    state.add(temperature_K[i], bed.materials[bed.material[i]].emissivity);
+  for (std::size_t k = 0; k < enclosure.sphere_count(); ++k)
+    state.add(temperature_K[enclosure.particle[k]], bed.materials[enclosure.material[k]].emissivity);
   for (const Wall& wall : enclosure.walls) state.add(wall.temperature_K, wall.emissivity, wall.role);
   state.add(surroundings_K, 1, WallRole::open);
   return state;

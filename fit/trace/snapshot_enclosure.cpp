@@ -86,6 +86,7 @@ void restore_file_order(Enclosure& enclosure, const std::vector<std::size_t>& fi
     enclosure.centre_m[k] = by_id.centre_m[order[k]];
     enclosure.radius_m[k] = by_id.radius_m[order[k]];
     enclosure.particle[k] = by_id.particle[order[k]];
+    enclosure.material[k] = by_id.material[order[k]];
   }
 }
 
