@@ -166,9 +166,11 @@ void print_forecast(const Case& c, Simulation& simulation, const RunOptions& opt
                     const CheckOptions& asked) {
   const Bed bed = simulation.bed();
   const Forecast cost = forecast(c, simulation, options.threads);
-  fmt::print("\nforecast for this machine{}\n", cost.measured
-                                                    ? ", from a trial of the bed at time 0"
-                                                    : ", the flow at 4 million particle-steps a second");
+  fmt::print("\nforecast for this machine, {}\n",
+             cost.speed_in_contact > 0
+                 ? fmt::format("the flow of a bed in contact: {:.2g} million particle-steps a second",
+                               cost.speed_in_contact / 1e6)
+                 : "from a trial of the bed at time 0");
   fmt::print("  flow {}, conduction {}, radiation {}, output {}: about {}\n", duration(cost.flow_s),
              duration(cost.conduction_s), duration(cost.radiation_s), duration(cost.output_s),
              duration(cost.total_s()));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "coupling/granrun/flow_speed.h"
 #include "coupling/simulation/heat_model.h"
 #include "coupling/validate/update_cost.h"
 #include "dem/base/clock.h"
@@ -17,11 +18,14 @@ namespace granrad {
 namespace {
 
 constexpr double trial_s = 0.5;                 // for flow and conduction
-constexpr double usual_particle_steps_s = 4e6;  // of the flow on one core, settled or flowing beds
+constexpr double usual_particle_steps_s = 1e7;  // whether a trial is short
 constexpr double rays_of_a_trial = 4e6, walks_of_a_trial = 1e6;
 constexpr std::size_t most_particles_tried = 20000;
+constexpr double poured_to_resting =
+    0.45;  // speed of the flow: lists made anew, walls of hoppers; of two moving beds
 constexpr double bytes_per_particle = 700;  // columns, lists, contacts and conductances of a dense bed
 constexpr double frame_bytes_per_particle = 330;
+constexpr double frame_s = 0.002, disk_bytes_s = 2e8, row_s = 3e-4;  // of an SSD
 
 /// Without the longest tenth, in which other programs had their turn.
 double undisturbed_mean(std::vector<double> values) {
@@ -83,15 +87,19 @@ UpdateSeconds seconds_of_an_update(const Case& c, const Bed& bed, int threads) {
   return {all, shared ? std::max(0.0, with_many - per_ray * many) : all};
 }
 
-/// Of the updates of a frozen bed after the first: its view factors are known, radiosities are solved.
-double seconds_of_a_solve(const Case& c, const Bed& bed, int threads) {
-  const Case trial = with_rays(c, rays_to_try(c, bed));
+/// Of the updates of a frozen bed after the first: its view factors are known and radiosities are solved, or its tracer is
+/// there and walks are traced.
+double seconds_of_a_later_update(const Case& c, const Bed& bed, int threads) {
+  const double rays = rays_to_try(c, bed);
+  const Case trial = with_rays(c, rays);
   HeatModel heat(trial, threads);
   heat.start(bed);
   heat.draw_radiation(bed, 0);
   const double start = monotonic_s();
   heat.draw_radiation(bed, 0);
-  return monotonic_s() - start;
+  const double walks =
+      c.heat.radiation.kind == RadiationKind::paths && rays > 0 ? c.heat.radiation.rays / rays : 1;
+  return (monotonic_s() - start) * walks;
 }
 
 }  // namespace
@@ -105,16 +113,16 @@ Forecast forecast(const Case& c, Simulation& simulation, int threads) {
   cost.heat_steps = ticks, cost.mean_count = count;
   cost.threads = threads > 0 ? threads : omp_get_max_threads();
   if (plan.ticks_per_radiation > 0) {
-    const bool anew =
-        moves || c.heat.radiation.kind == RadiationKind::paths;  // a frozen bed keeps its view factors
     const double updates = std::ceil(ticks / static_cast<double>(plan.ticks_per_radiation));
-    cost.radiation_updates = anew ? updates : 1;
-    const double times =
-        cost.radiation_updates * (bed.size() > 0 ? count / static_cast<double>(bed.size()) : 1);
+    const double made_anew = moves ? updates : 1;
+    cost.radiation_updates = moves || c.heat.radiation.kind == RadiationKind::paths ? updates : 1;
+    const double times = made_anew * (bed.size() > 0 ? count / static_cast<double>(bed.size()) : 1);
     const UpdateSeconds update = seconds_of_an_update(c, bed, threads);
-    const double solves = anew || bed.size() == 0 ? 0 : (updates - 1) * seconds_of_a_solve(c, bed, threads);
-    cost.radiation_s = update.all * times + solves;
-    cost.radiation_repeated_s = update.repeated * times + solves;
+    const double later =
+        moves || bed.size() == 0 ? 0 : (updates - 1) * seconds_of_a_later_update(c, bed, threads);
+    cost.radiation_s = update.all * times + later;
+    const bool walks = c.heat.radiation.kind == RadiationKind::paths;  // ranks share them
+    cost.radiation_repeated_s = update.repeated * times + (walks ? 0 : later);
   }
   const double expected_tick_s = static_cast<double>(bed.size()) *
                                  static_cast<double>(moves ? plan.steps_per_tick : 1) /
@@ -136,14 +144,19 @@ Forecast forecast(const Case& c, Simulation& simulation, int threads) {
     const double more = ticks * count / static_cast<double>(bed.size());
     cost.flow_s = undisturbed_mean(flow) * more * plan.tick_s / trial.plan().tick_s;
     cost.conduction_s = undisturbed_mean(conduction) * more;
-    cost.measured = true;
-  } else if (moves) {
-    cost.flow_s = count * ticks * static_cast<double>(plan.steps_per_tick) / usual_particle_steps_s;
+  }
+  const bool poured = c.flow.feed.kind == FeedSettings::Kind::hopper && norm(c.flow.gravity_m_s2) > 0;
+  if (poured || (cost.flow_s == 0 && moves)) {
+    const double speed =
+        speed_in_contact(c.flow, plan.step_s, count, threads) * (poured ? poured_to_resting : 1);
+    const double in_contact_s =
+        speed > 0 ? count * ticks * static_cast<double>(plan.steps_per_tick) / speed : 0;
+    if (in_contact_s > cost.flow_s) cost.flow_s = in_contact_s, cost.speed_in_contact = speed;
   }
   cost.frames = std::ceil(ticks / static_cast<double>(plan.ticks_per_frame)) + 1;
   cost.frame_bytes = 6e4 + frame_bytes_per_particle * count;
-  cost.output_s =
-      cost.frames * (0.01 + cost.frame_bytes / 1e8) + 0.002 * ticks / static_cast<double>(plan.ticks_per_row);
+  cost.output_s = cost.frames * (frame_s + cost.frame_bytes / disk_bytes_s) +
+                  row_s * ticks / static_cast<double>(plan.ticks_per_row);
   cost.memory_bytes = 6e7 + bytes_per_particle * count;
   return cost;
 }

@@ -16,12 +16,14 @@ struct Forecast {
   int threads = 1;
   double frame_bytes = 0, frames = 0;
   double memory_bytes = 0;
-  bool measured = false;  ///< false: the flow by a usual speed, because the bed is empty or too large to try
+  double speed_in_contact =
+      0;  ///< particle-steps a second the flow is reckoned with; 0: by a trial of the bed
   double total_s() const { return flow_s + conduction_s + radiation_s + output_s; }
 };
 
 /// Runs a few heat steps of the bed at time 0, a few seconds, and scales them to the run: flow and conduction with
-/// the mean number of particles a feed will bring, radiation with its rays (many are foreseen from two trials with fewer). Changes `simulation`.
+/// the mean number of particles a feed will bring; beds that are poured, empty or too large to try have the flow of a bed
+/// in contact (flow_speed.h); radiation with its rays (many are foreseen from two trials with fewer). Changes `simulation`.
 Forecast forecast(const Case& c, Simulation& simulation, int threads);
 
 /// What one source needs for heats of the walls with a standard error of `error` (radiation.error, else 1 %), by one trial

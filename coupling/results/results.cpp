@@ -115,13 +115,14 @@ void print_walls(const Results& results, const PrintUnit& K) {
 }
 
 void print_seconds(const PartSeconds& s) {
-  const double total = s.flow + s.conduction + s.radiation;
+  const double total = s.flow + s.conduction + s.radiation + s.output;
   if (total <= 0) return;
   const auto part = [&](double seconds) { return 100 * seconds / total; };
   fmt::print(
       "  computing: flow {:.1f} s ({:.0f} %), conduction {:.1f} s ({:.0f} %),\n"
-      "    radiation {:.1f} s ({:.0f} %)\n",
-      s.flow, part(s.flow), s.conduction, part(s.conduction), s.radiation, part(s.radiation));
+      "    radiation {:.1f} s ({:.0f} %), output {:.1f} s ({:.0f} %)\n",
+      s.flow, part(s.flow), s.conduction, part(s.conduction), s.radiation, part(s.radiation), s.output,
+      part(s.output));
 }
 
 }  // namespace
