@@ -147,12 +147,16 @@ class Mender {
   using Edge = std::pair<std::int32_t, std::int32_t>;
   const Vec3& point(std::int32_t k) const { return welder_.points[static_cast<std::size_t>(k)]; }
 
+  double twice_area(const Triangle& t) const {
+    return norm(cross(point(t[1]) - point(t[0]), point(t[2]) - point(t[0])));
+  }
+
   /// Lower than the tolerance over its longest side.
   bool is_flat(const Triangle& t) const {
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return true;
     const Vec3 &a = point(t[0]), &b = point(t[1]), &c = point(t[2]);
     const double longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
-    return norm(cross(b - a, c - a)) <= tolerance_ * longest;
+    return twice_area(t) <= tolerance_ * longest;
   }
 
   static std::map<Edge, int> open_edges(const std::vector<std::vector<Triangle>>& meshes) {
@@ -188,6 +192,7 @@ class Mender {
         const std::int32_t middle = vertex_on(a, b, ends);
         const Triangle first{a, middle, apex}, rest{middle, b, apex};
         if (middle < 0 || middle == apex || is_flat(first) || is_flat(rest)) continue;
+        if (std::max(twice_area(first), twice_area(rest)) >= twice_area(t)) continue;  // so that cutting ends
         triangles[k] = first;
         triangles.push_back(rest);
         cut_here_.insert(std::minmax(a, middle)), cut_here_.insert(std::minmax(middle, b));
