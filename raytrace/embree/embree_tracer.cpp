@@ -20,7 +20,7 @@ struct EmbreeTracer::Impl : EmbreeTree {
   };
 
   Nearest trace(const Vec3& origin, const Vec3& direction, std::int32_t from, const Vec3& from_normal,
-                Query& query) const;
+                Query& query, FacetHit& exit) const;
   bool has_left(const Vec3& origin, const Vec3& direction) const;
   Hit trace_periodic(Vec3 origin, const Vec3& direction, std::int32_t from, const Vec3& from_normal) const;
   bool wall_between_centre_and(const Vec3& origin, std::int32_t sphere, Query& query) const;
@@ -109,14 +109,14 @@ bool EmbreeTracer::Impl::starts_behind_wall(const Vec3& origin, std::int32_t fro
 
 EmbreeTracer::Impl::Nearest EmbreeTracer::Impl::trace(const Vec3& origin, const Vec3& direction,
                                                       std::int32_t from, const Vec3& from_normal,
-                                                      Query& query) const {
+                                                      Query& query, FacetHit& exit) const {
   query.origin = origin;
   query.direction = direction;
   if (from >= 0 && from < spheres)
     query.source_ball = from;
   else if (from >= 0)
     query.source_normal = from_normal;
-  const FacetHit exit = cell ? cell->exit(*cell_facets, origin, direction) : FacetHit{infinity, -1};
+  exit = cell ? cell->exit(*cell_facets, origin, direction) : FacetHit{infinity, -1};
   if (exit.distance > 0) walk(query, exit.distance);
   return nearest(query, exit, infinity);
 }
@@ -188,6 +188,14 @@ EmbreeTracer::EmbreeTracer(const Enclosure& enclosure, int threads)
     : impl_(std::make_unique<Impl>(enclosure, threads)) {}
 EmbreeTracer::~EmbreeTracer() = default;
 
+bool EmbreeTracer::is_closed() const {
+  return impl_->cell.has_value();
+}
+
+bool EmbreeTracer::is_convex() const {
+  return is_closed() && impl_->loose_facets->count() == 0;
+}
+
 Hit EmbreeTracer::first_hit(const Vec3& origin, const Vec3& direction, std::int32_t from,
                             const Vec3& from_normal) const {
   const Vec3 start = impl_->to_units(origin);
@@ -196,7 +204,20 @@ Hit EmbreeTracer::first_hit(const Vec3& origin, const Vec3& direction, std::int3
   if (impl_->starts_behind_wall(start, from, behind))
     return impl_->hit_on_facet(*impl_->loose_facets, behind.facet, start, 0);
   Query query;
-  return impl_->hit(impl_->trace(start, direction, from, from_normal, query), query);
+  FacetHit exit;
+  return impl_->hit(impl_->trace(start, direction, from, from_normal, query, exit), query);
+}
+
+Hit EmbreeTracer::first_hit_and_crossed(const Vec3& origin, const Vec3& direction, std::int32_t from,
+                                        const Vec3& from_normal, Crossed& crossed) const {
+  const Vec3 start = impl_->to_units(origin);
+  crossed.spheres.clear();
+  Query query;
+  if (from >= impl_->spheres) query.crossed = &crossed.spheres;
+  FacetHit exit;
+  const Impl::Nearest nearest = impl_->trace(start, direction, from, from_normal, query, exit);
+  crossed.wall = impl_->spheres + impl_->cell_facets->wall(exit.facet);
+  return impl_->hit(nearest, query);
 }
 
 End EmbreeTracer::first_end(const Vec3& origin, const Vec3& direction, std::int32_t from,
@@ -210,7 +231,8 @@ End EmbreeTracer::first_end(const Vec3& origin, const Vec3& direction, std::int3
   if (impl_->starts_behind_wall(start, from, behind))
     return {impl_->spheres + impl_->loose_facets->wall(behind.facet), 0};
   Query query;
-  return impl_->end(impl_->trace(start, direction, from, from_normal, query));
+  FacetHit exit;
+  return impl_->end(impl_->trace(start, direction, from, from_normal, query, exit));
 }
 
 }  // namespace granrad

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "raytrace/enclosure.h"
 
@@ -31,6 +32,11 @@ class EmbreeTracer {
   EmbreeTracer(const EmbreeTracer&) = delete;
   EmbreeTracer& operator=(const EmbreeTracer&) = delete;
 
+  /// Whether a room is convex with flat walls and nothing but spheres in it.
+  bool is_convex() const;
+  /// Whether no ray can reach the surroundings, for planar walls are the whole boundary of a convex room.
+  bool is_closed() const;
+
   /// Follows a ray from `origin` (on surface `from`, or anywhere with from = -1) along unit `direction`.
   /// A convex surface never hits itself, by identity; a ray that starts inside another sphere hits it at
   /// distance zero; a ray that meets the back of a wall is leaked, as is one that runs for ever along a
@@ -39,6 +45,15 @@ class EmbreeTracer {
   /// meets the back of its own plate.
   Hit first_hit(const Vec3& origin, const Vec3& direction, std::int32_t from,
                 const Vec3& from_normal = {}) const;
+  /// What a ray would meet were each sphere alone in a convex room: every sphere on the way (but the one that it leaves or
+  /// starts inside of) and the wall behind them.
+  struct Crossed {
+    std::vector<std::int32_t> spheres;  ///< in no order; of rays that start on walls alone
+    std::int32_t wall = -1;             ///< surface number
+  };
+  /// first_hit in a convex room.
+  Hit first_hit_and_crossed(const Vec3& origin, const Vec3& direction, std::int32_t from,
+                            const Vec3& from_normal, Crossed& crossed) const;
   End first_end(const Vec3& origin, const Vec3& direction, std::int32_t from,
                 const Vec3& from_normal = {}) const;
 

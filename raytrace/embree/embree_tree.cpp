@@ -43,7 +43,8 @@ struct Walk : QueryContext {
   Query* query = nullptr;
 };
 
-void shorten(RTCRayHitN* rayhit, double distance, double margin) {
+void shorten(const Query& query, RTCRayHitN* rayhit, double distance, double margin) {
+  if (query.crossed) return;
   auto& ray = reinterpret_cast<RTCRayHit*>(rayhit)->ray;
   const float limit = static_cast<float>((distance + margin) * (1 + 1e-6));
   ray.tfar = std::min(ray.tfar, limit);
@@ -89,7 +90,7 @@ void meet_ball(const RTCIntersectFunctionNArguments* args) {
       query.ball_depth = depth;
       query.ball_distance = 0;
       query.ball = number;
-      shorten(args->rayhit, 0, 2 * tree.pad);
+      shorten(query, args->rayhit, 0, 2 * tree.pad);
     }
     return;
   }
@@ -98,12 +99,13 @@ void meet_ball(const RTCIntersectFunctionNArguments* args) {
   const Vec3 across = to_centre - along * query.direction;
   const double half_chord2 = r2 - dot(across, across);
   if (half_chord2 < 0) return;
+  if (query.crossed) query.crossed->push_back(number);
   const double t = std::max(0.0, along - std::sqrt(half_chord2));
   const bool tie = t == query.ball_distance && query.ball_depth == 0 && number < query.ball;
   if (t < query.ball_distance || tie) {
     query.ball_distance = t;
     query.ball = number;
-    shorten(args->rayhit, t, 2 * tree.pad);
+    shorten(query, args->rayhit, t, 2 * tree.pad);
   }
 }
 
@@ -120,7 +122,7 @@ void meet_facet(const RTCIntersectFunctionNArguments* args) {
     if (front < query.front_distance || (front == query.front_distance && facet < query.facet)) {
       query.front_distance = front;
       query.facet = facet;
-      shorten(args->rayhit, front, 2 * tree.pad);
+      shorten(query, args->rayhit, front, 2 * tree.pad);
     }
     return;
   }
@@ -128,7 +130,7 @@ void meet_facet(const RTCIntersectFunctionNArguments* args) {
   if (back < query.back_distance) {
     query.back_distance = back;
     query.back_facet = facet;
-    shorten(args->rayhit, back, 2 * tree.pad);
+    shorten(query, args->rayhit, back, 2 * tree.pad);
   }
 }
 

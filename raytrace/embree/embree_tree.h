@@ -17,6 +17,8 @@ struct Query {
   std::int32_t source_ball = -1;  ///< image the ray leaves, excluded by identity
   Vec3 source_normal{};           ///< of the wall the ray leaves, at its start, or zero
   bool seek_balls = true;
+  std::vector<std::int32_t>* crossed =
+      nullptr;  ///< gets every ball on the way to the limit, which then stays
 
   double ball_distance = infinity, ball_depth = 0;
   std::int32_t ball = -1;

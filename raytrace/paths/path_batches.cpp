@@ -1,5 +1,6 @@
 #include "raytrace/paths/path_batches.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -71,7 +72,40 @@ Batches gather_part(const BatchTallies& found, std::int64_t surfaces) {
   return batches;
 }
 
+/// Slope of x over y of the walks, in parts.
+int best_parts(const WalkMoments& m) {
+  const double n = static_cast<double>(m.walks), y = static_cast<double>(m.y);
+  const double with = static_cast<double>(m.xy) - static_cast<double>(m.x) * y / n;
+  const double own = static_cast<double>(m.yy) - y * y / n;
+  if (!(own > 0)) return 0;
+  return static_cast<int>(
+      std::clamp(std::round(clear_flight_parts * with / own), 0.0, 1.0 * clear_flight_parts));
+}
+
 }  // namespace
+
+void take_out_clear_flights(BatchTallies& found) {
+  constexpr std::size_t sums = 5;
+  std::vector<std::int64_t> all(sums * found.size(), 0);
+  for (std::size_t b = 0; b < found.size(); ++b) {
+    if (!found[b]) continue;
+    const WalkMoments& m = found[b]->moments;
+    const std::int64_t own[sums] = {m.walks, m.x, m.y, m.xy, m.yy};
+    std::copy(own, own + sums, all.begin() + static_cast<std::ptrdiff_t>(sums * b));
+  }
+  sum_over_ranks(all);
+  for (std::size_t b = 0; b < found.size(); ++b) {
+    if (!found[b]) continue;
+    WalkMoments others;
+    for (std::size_t other = 0; other < found.size(); ++other) {
+      const std::int64_t* m = &all[sums * other];
+      if (other != b) others.add({m[0], m[1], m[2], m[3], m[4]});
+    }
+    const int parts = best_parts(others);
+    for (std::size_t s = 0; s < found[b]->heat.size(); ++s)
+      found[b]->heat[s] = clear_flight_parts * found[b]->heat[s] - parts * found[b]->clear_heat[s];
+  }
+}
 
 BatchSums sum_batches(const BatchTallies& found, const PathSurfaces& surfaces) {
   const auto count = static_cast<std::int64_t>(surfaces.count());

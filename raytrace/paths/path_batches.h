@@ -10,6 +10,12 @@ namespace granrad {
 /// What a rank found of each batch; nothing of those it did not work at.
 using BatchTallies = std::vector<std::optional<PathTally>>;
 
+/// Heats become clear_flight_parts (heat - lambda clear_heat), in whole parts, so that they still sum to 0. Each batch has the
+/// lambda in [0, 1] that takes most noise out of the wall heat of all other batches of all ranks: having nothing to do with
+/// its own walks, it leaves their mean alone.
+inline constexpr int clear_flight_parts = 64;
+void take_out_clear_flights(BatchTallies& found);
+
 /// A sum over all batches and the standard error of that sum, from their scatter; in quanta.
 struct SumAndError {
   double total, error;

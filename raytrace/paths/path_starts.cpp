@@ -35,18 +35,58 @@ double PathSurfaces::power_range_W_m2() const {
   return high > low ? high - low : 0;
 }
 
+namespace {
+
+/// Emission areas eps A of a kind of surface, and the mean and the variance over them of the emissive power.
+struct Emitters {
+  double area_m2 = 0, mean_W_m2 = 0, variance = 0;
+
+  void add(double emission_area_m2, double power_W_m2) {  // Welford 1962, weighted
+    area_m2 += emission_area_m2;
+    const double off = power_W_m2 - mean_W_m2;
+    mean_W_m2 += off * emission_area_m2 / area_m2;
+    squares_ += emission_area_m2 * off * (power_W_m2 - mean_W_m2);
+    variance = squares_ / area_m2;
+  }
+
+ private:
+  double squares_ = 0;
+};
+
+/// Walks between walls and particles are worth the same wherever they start, so they are cheapest from the kind with less
+/// area. Those between particles, and from particles to surroundings that start none, tell of differences between their
+/// powers alone: with rho^2 = mean square of those over that between walls and particles, the sum of the variances of all
+/// heats, X_wp / d_w + X_pp rho^2 / d_p (d: walks per area, X_pp / X_wp about A_p / A_w), is least where walks from
+/// particles are rho A_p / A_w of those from walls.
+double share_on_walls(const Emitters& particles, const Emitters& walls, double beyond_W_m2) {
+  constexpr double least = 0.75;
+  const auto square = [](double x) { return x * x; };
+  const double among = particles.variance + square(beyond_W_m2 - particles.mean_W_m2);
+  const double between = square(walls.mean_W_m2 - particles.mean_W_m2) + walls.variance + particles.variance;
+  if (!(between > 0) || particles.area_m2 < walls.area_m2) return least;
+  return std::max(least, 1 / (1 + std::sqrt(among / between) * particles.area_m2 / walls.area_m2));
+}
+
+}  // namespace
+
 PathStarts::PathStarts(const Enclosure& enclosure, const PathSurfaces& surfaces, std::int64_t walks,
-                       double wall_share)
+                       std::optional<double> wall_share, bool closed)
     : walks_(walks), walks_per_m2_(enclosure.surface_count(), 0.0) {
   const auto area = surface_areas(enclosure);
   const auto emitters = static_cast<std::int32_t>(enclosure.open_surface());
-  double total_m2[2] = {0, 0};  // of particles, of walls
+  Emitters kind[2];  // particles, walls
   for (std::int32_t s = 0; s < emitters; ++s)
-    if (surfaces.radiates(s)) total_m2[surfaces.is_wall(s)] += surfaces.absorptivity(s) * area[s];
-  emission_area_m2_ = total_m2[0] + total_m2[1];
-  const double on_walls = total_m2[0] == 0 ? 1 : total_m2[1] == 0 ? 0 : wall_share;
-  const double share_per_m2[2] = {total_m2[0] > 0 ? (1 - on_walls) / total_m2[0] : 0,
-                                  total_m2[1] > 0 ? on_walls / total_m2[1] : 0};
+    if (surfaces.radiates(s))
+      kind[surfaces.is_wall(s)].add(surfaces.absorptivity(s) * area[s], surfaces.power_W_m2(s));
+  emission_area_m2_ = kind[0].area_m2 + kind[1].area_m2;
+  const double beyond =
+      closed || !surfaces.radiates(emitters) ? kind[0].mean_W_m2 : surfaces.power_W_m2(emitters);
+  const double on_walls = kind[0].area_m2 == 0   ? 1
+                          : kind[1].area_m2 == 0 ? 0
+                          : wall_share           ? *wall_share
+                                                 : share_on_walls(kind[0], kind[1], beyond);
+  const double share_per_m2[2] = {kind[0].area_m2 > 0 ? (1 - on_walls) / kind[0].area_m2 : 0,
+                                  kind[1].area_m2 > 0 ? on_walls / kind[1].area_m2 : 0};
   double sum = 0;
   for (std::int32_t s = 0; s < emitters; ++s) {
     if (surfaces.radiates(s)) {
@@ -91,7 +131,7 @@ double PathStarts::most_walks_per_m2() const {
 }
 
 std::int32_t PathStarts::surface_at(double u) const {
-  const double all = cumulative_.back(), target = std::min(u * all, std::nextafter(all, 0.0));
+  const double all = cumulative_.back(), target = std::min(u * all, all * (1 - 0x1p-53));
   const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), target);
   return static_cast<std::int32_t>(found - cumulative_.begin());
 }
@@ -116,7 +156,7 @@ std::array<double, 4> StartLattice::uniforms(std::int64_t k) const {
   std::array<double, 4> u;
   for (int d = 0; d < 4; ++d) {
     const double x = shift_[d] + static_cast<double>(k) * step[d];
-    u[d] = x - std::floor(x);
+    u[d] = x - static_cast<double>(static_cast<std::int64_t>(x));  // x >= 0: floor, without a call
   }
   return u;
 }

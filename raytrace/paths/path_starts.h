@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "raytrace/enclosure.h"
@@ -37,13 +38,15 @@ class PathSurfaces {
 /// moves its temperature by at most 1 % of the way to that of the other end.
 inline constexpr double walks_per_relaxation = 100;
 
-/// Where walks start: a share on the walls, the rest on the particles, on each kind in proportion to emissivity times
-/// area. Particles that this gives fewer than walks_per_relaxation k / (1 + k) get that many, and the walks become
+/// Where walks start: a share on the walls (PathOptions::wall_share), the rest on the particles, on each kind in proportion
+/// to emissivity times area. Particles that this gives fewer than walks_per_relaxation k / (1 + k) get that many, and the walks become
 /// more: a small particle, whose temperature follows its heat at once, is sampled as often as it needs. Both ends of a
 /// pair are weighted by their own density of walks, so that any choice of starts is unbiased.
 class PathStarts {
  public:
-  PathStarts(const Enclosure& enclosure, const PathSurfaces& surfaces, std::int64_t walks, double wall_share);
+  /// `closed`: no walk reaches the surroundings.
+  PathStarts(const Enclosure& enclosure, const PathSurfaces& surfaces, std::int64_t walks,
+             std::optional<double> wall_share, bool closed);
 
   std::int64_t walks() const { return walks_; }  ///< those asked for, or more
   /// sum eps_i A_i over the surfaces that emit, m^2. 0: no walk can start.

@@ -11,12 +11,16 @@ namespace granrad {
 
 void PathTally::add(const PathTally& other) {
   for (std::size_t s = 0; s < heat.size(); ++s) heat[s] += other.heat[s];
+  for (std::size_t s = 0; s < clear_heat.size(); ++s) clear_heat[s] += other.clear_heat[s];
+  moments.add(other.moments);
   segments += other.segments;
   lost += other.lost;
 }
 
 void PathTally::clear() {
   std::fill(heat.begin(), heat.end(), 0);
+  std::fill(clear_heat.begin(), clear_heat.end(), 0);
+  moments = {};
   segments = lost = 0;
 }
 

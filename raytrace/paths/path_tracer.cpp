@@ -44,7 +44,7 @@ BatchTallies run_batches(const PathWalker& walker, int threads) {
   const RankPart mine = part_of_rank(static_cast<std::int64_t>(pieces.size()));
 #pragma omp parallel num_threads(threads)
   {
-    PathTally own(surfaces);
+    PathTally own(surfaces, walker.has_clear_flights());
     int batch = -1;
     const auto hand_over = [&](int next) {
       if (next == batch) return;
@@ -52,7 +52,7 @@ BatchTallies run_batches(const PathWalker& walker, int threads) {
 #pragma omp critical
         {
           auto& sum = batches[static_cast<std::size_t>(batch)];
-          if (!sum) sum.emplace(surfaces);
+          if (!sum) sum.emplace(surfaces, walker.has_clear_flights());
           sum->add(own);
         }
         own.clear();
@@ -65,7 +65,9 @@ BatchTallies run_batches(const PathWalker& walker, int threads) {
       const Piece& piece = pieces[static_cast<std::size_t>(p)];
       hand_over(piece.batch);
       const std::int64_t first = first_walk(walks, piece.batch);
-      const auto lattice = walker.lattice(piece.batch, first_walk(walks, piece.batch + 1) - first);
+      const std::int64_t of_batch = first_walk(walks, piece.batch + 1) - first;
+      const auto lattice = walker.lattice(piece.batch, of_batch);
+      if (piece.first == 0) walker.expect(of_batch, own);
       for (std::int64_t k = piece.first; k < piece.last; ++k)
         walker.walk(lattice, k, static_cast<std::uint64_t>(first + k), own);
     }
@@ -98,13 +100,15 @@ RadiativeHeat trace_paths(const Enclosure& enclosure, const EmbreeTracer& tracer
                             options.walks, 2 * path_batches),
                 "10000 is usual"));
   const PathWalker walker(enclosure, tracer, state, options, update);
-  const BatchSums sums = sum_batches(
-      run_batches(walker, options.threads > 0 ? options.threads : omp_get_max_threads()), walker.surfaces());
+  BatchTallies batches = run_batches(walker, options.threads > 0 ? options.threads : omp_get_max_threads());
+  if (walker.has_clear_flights()) take_out_clear_flights(batches);
+  const BatchSums sums = sum_batches(batches, walker.surfaces());
   if (static_cast<double>(sums.lost) > 1e-3 * static_cast<double>(walker.walks()))
     throw NumericalError(
         advised(fmt::format("paths: {} of {} walks leaked or did not end", sums.lost, walker.walks()),
                 "close the walls, and let some surface absorb"));
-  RadiativeHeat heat = in_watts(sums, walker.quantum_W());
+  RadiativeHeat heat =
+      in_watts(sums, walker.quantum_W() / (walker.has_clear_flights() ? clear_flight_parts : 1));
   heat.lost_rays = sums.lost;
   return heat;
 }

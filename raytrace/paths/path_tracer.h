@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 
 #include "raytrace/embree/embree_tracer.h"
 #include "raytrace/enclosure.h"
@@ -12,9 +13,10 @@ struct PathOptions {
       10000;  ///< per update, >= 2 path_batches; more where particles need it (see PathStarts)
   std::uint64_t seed = 1;
   /// Share of the walks that start on isothermal and open walls, the rest on particles. At 0 or 1 the
-  /// exchange within the kind that starts none is left out. 0.75: a sixth of the cost of even starts for the
-  /// wall heat of a dense bed.
-  double wall_share = 0.75;
+  /// exchange within the kind that starts none is left out. Not given: at least 0.75, and the more the less the particles
+  /// differ in emissive power among themselves; all where they do not, for then they exchange nothing. Takes 2.8 and 3.4
+  /// times less walks than 0.75 for the wall heat of black beds at 25 and 43 %, a fifth less for that of each particle.
+  std::optional<double> wall_share{};
   double weighted_below = 0.7;  ///< smallest emissivity below which walks are weighted instead of absorbed
   int threads = 0;              ///< 0: OpenMP's default; results do not depend on it
 };

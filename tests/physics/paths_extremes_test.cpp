@@ -125,7 +125,7 @@ TEST(PathExtremes, WalksAreChosenForTheErrorWanted) {
   PathSource source(options);
   RadiativeState state = c.state();
   const auto look = source.net_heat(c.enclosure, state, 0);
-  for (const double relative : {0.04, 0.01}) {
+  for (const double relative : {0.04, 0.002}) {  // the first look knows it to 0.3 %
     state.wanted_error_W = relative * look.isothermal_wall_heat_W;
     double squares = 0;
     constexpr int updates = 10;
