@@ -76,6 +76,10 @@ bool BedTransfer::holds(const Bed& bed, const Rows& rows) const {
 
 void BedTransfer::lay_out(const Bed& bed, Rows& rows, int threads) {
   check(bed);
+  if (static_cast<std::int64_t>(bed.size()) + 2 * threads > RowOffset::most_rows)
+    throw InputError(advised(fmt::format("{} particles (the engine numbers at most {})", bed.size(),
+                                         RowOffset::most_rows - 2 * threads),
+                             "try fewer"));
   id_ = bed.id, radius_ = bed.radius_m, material_ = bed.material, materials_ = bed.materials;
   const auto n = static_cast<std::int64_t>(bed.size()), all = n + 2 * threads;
   rows.count = n;

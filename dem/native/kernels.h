@@ -2,6 +2,7 @@
 #include <cstdint>
 
 #include "dem/native/contact_law.h"
+#include "dem/native/row_offset.h"
 
 namespace granrad::native {
 
@@ -41,8 +42,8 @@ struct VariedView {
 /// Contacts between two rows (`count` a multiple of 16), or a row and a plane (of 8); entries up to 64 beyond
 /// it are valid rows (prefetching looks there).
 struct ContactView {
-  const std::int32_t* first;
-  const std::int32_t* second;
+  const RowOffset* first;
+  const RowOffset* second;
   std::int64_t count;
   double* displacement[3];  ///< tangential springs, m
   float* rounded[3];        ///< the same where the law is in single precision

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#define GRANRAD_INLINE [[gnu::always_inline]] static inline
+#include "dem/native/row_offset.h"
 
 namespace granrad::native {
 
@@ -29,12 +29,12 @@ struct LawInDouble {
     return rows.velocity;
   }
   template <class Rows>
-  GRANRAD_INLINE const double* position(const Rows& rows, std::int64_t i) {
-    return rows.position + 4 * i;
+  GRANRAD_INLINE const double* position(const Rows& rows, RowOffset i) {
+    return row_of<4>(rows.position, i);
   }
   template <class Rows>
-  GRANRAD_INLINE void prefetch_row(const Rows& rows, std::int64_t i) {
-    __builtin_prefetch(rows.position + 4 * i), __builtin_prefetch(rows.velocity + 8 * i);
+  GRANRAD_INLINE void prefetch_row(const Rows& rows, RowOffset i) {
+    __builtin_prefetch(row_of<4>(rows.position, i)), __builtin_prefetch(row_of<8>(rows.velocity, i));
   }
   template <class Contacts>
   GRANRAD_INLINE double* const* springs(const Contacts& c) {
@@ -56,12 +56,12 @@ struct LawInSingle {
     return rows.mixed;
   }
   template <class Rows>
-  GRANRAD_INLINE const double* position(const Rows& rows, std::int64_t i) {
-    return rows.mixed[i].position;
+  GRANRAD_INLINE const double* position(const Rows& rows, RowOffset i) {
+    return row_at(rows.mixed, i)->position;
   }
   template <class Rows>
-  GRANRAD_INLINE void prefetch_row(const Rows& rows, std::int64_t i) {
-    __builtin_prefetch(rows.mixed + i);
+  GRANRAD_INLINE void prefetch_row(const Rows& rows, RowOffset i) {
+    __builtin_prefetch(row_at(rows.mixed, i));
   }
   template <class Contacts>
   GRANRAD_INLINE float* const* springs(const Contacts& c) {

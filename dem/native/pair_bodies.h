@@ -23,7 +23,7 @@ struct PairBodies {
   static constexpr int W = S::width, H = S::halves;
 
   struct Gathered {
-    V away[3], square, excess, velocity[3], spin[3], other_spin[3];
+    V away[3], square, excess, distance, inverse, velocity[3], spin[3], other_spin[3];
   };
   struct Scattered {
     typename D::I force[H][3], torque[H][3], other_force[H][3], other_torque[H][3];
@@ -76,7 +76,7 @@ struct PairBodies {
     for (int h = 0; h < H; ++h) {
       const std::int64_t from = at + h * D::width;
       typename D::V d[4], sum = D::set(2 * k.radius);
-      D::pair_positions([&](std::int64_t i) { return S::position(rows, i); }, c.first + from, c.second + from,
+      D::pair_positions([&](RowOffset i) { return S::position(rows, i); }, c.first + from, c.second + from,
                         d);
       nearest_image<D, periodic>(k, d);
       if constexpr (varied)
@@ -121,12 +121,11 @@ struct PairBodies {
     else
       ri = rj = S::set(constants.radius);
     if (c.touch_sum) record_touch<varied>(c, constants, k, ri, rj, in);
-    const V distance = S::sqrt(in.square), inverse = S::set(1.0) / distance;
     ContactState<S> state;
-    state.overlap = S::overlap(ri + rj, distance, in.excess);
+    state.overlap = S::overlap(ri + rj, in.distance, in.excess);
     const V arm_i = ri - half * state.overlap, arm_j = rj - half * state.overlap;
     for (int a = 0; a < 3; ++a) {
-      state.normal[a] = in.away[a] * inverse;
+      state.normal[a] = in.away[a] * in.inverse;
       state.velocity[a] = in.velocity[a];
       state.arm_spin[a] = varied ? arm_i * in.spin[a] + arm_j * in.other_spin[a] : arm_i * in.spin[a];
       state.displacement[a] = S::load(springs[a] + k);
@@ -169,7 +168,7 @@ struct PairBodies {
   GRANRAD_INLINE void scatter(const RowView& rows, const ContactView& c, std::int64_t at,
                               const Scattered& out) {
     for (int h = 0; h < H; ++h) {
-      const std::int32_t *i = c.first + at + h * D::width, *j = c.second + at + h * D::width;
+      const RowOffset *i = c.first + at + h * D::width, *j = c.second + at + h * D::width;
       const auto* f = out.force[h];
       if constexpr (first_only || varied) D::add_one(rows.force, i, f, out.torque[h]);
       if constexpr (!first_only && varied) D::add_one(rows.force, j, out.other_force[h], out.other_torque[h]);
@@ -182,16 +181,17 @@ struct PairBodies {
                              std::int64_t at, Gathered& in, bool& live) {
     const auto* motion = S::motion(rows);
     const auto* springs = S::springs(c);
-    const std::int32_t *i = c.first + at, *j = c.second + at;
+    const RowOffset *i = c.first + at, *j = c.second + at;
     for (int l = 0; l < W; ++l) {
-      const std::int64_t ahead = j[rows_ahead + l];
+      const RowOffset ahead = j[rows_ahead + l];
       S::prefetch_row(rows, ahead);
-      if (!first_only) D::prefetch(rows.force + 8 * ahead);
+      if (!first_only) D::prefetch(row_of<8>(rows.force, ahead));
     }
     for (int a = 0; a < 3; ++a) D::prefetch(springs[a] + at + springs_ahead);
     gather_positions<periodic, varied>(rows, c, constants, at, in);
     live = S::any(S::less(V{}, in.excess));
     if (!live) return;
+    in.distance = S::sqrt(in.square), in.inverse = S::set(1.0) / in.distance;
     if constexpr (varied)
       S::pair_velocities_apart(motion, i, j, in.velocity, in.spin, in.other_spin);
     else

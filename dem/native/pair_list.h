@@ -116,7 +116,7 @@ class PairList {
   AlignedVector<std::int32_t> near_i_, near_j_;
   std::vector<RowPair> backward_;  ///< near pairs whose first row is the higher one
   AlignedVector<std::int32_t> found_first_, found_second_, found_number_;  ///< what select found, near order
-  AlignedVector<std::int32_t> first_, second_;                             ///< tight pairs
+  AlignedVector<RowOffset> first_, second_;                                ///< tight pairs
   AlignedVector<std::int32_t> number_, next_number_;  ///< of tight pairs in the near list
   AlignedVector<std::int32_t> place_;                 ///< of near pairs in the tight list, or -1
   SpringColumns springs_, next_springs_;

@@ -50,19 +50,19 @@ struct Avx2Pack : LawInDouble<Avx2Pack> {
     c[0] = _mm256_permute2f128_pd(l0, l1, 0x20), c[2] = _mm256_permute2f128_pd(l0, l1, 0x31);
     c[1] = _mm256_permute2f128_pd(h0, h1, 0x20), c[3] = _mm256_permute2f128_pd(h0, h1, 0x31);
   }
-  template <class At>
-  GRANRAD_INLINE void pair_positions(const At& at, const std::int32_t* i, const std::int32_t* j, V d[4]) {
+  template <class At, class Index>
+  GRANRAD_INLINE void pair_positions(const At& at, const Index* i, const Index* j, V d[4]) {
     const __m256d flip = _mm256_setr_pd(-0.0, -0.0, -0.0, 0.0);
     __m256d r[4];
     for (int l = 0; l < 4; ++l)
       r[l] = _mm256_add_pd(_mm256_load_pd(at(i[l])), _mm256_xor_pd(flip, _mm256_load_pd(at(j[l]))));
     transpose(r, d);
   }
-  GRANRAD_INLINE void pair_velocities(const double* rows, const std::int32_t* i, const std::int32_t* j,
-                                      V u[3], V w[3]) {
+  template <class Index>
+  GRANRAD_INLINE void pair_velocities(const double* rows, const Index* i, const Index* j, V u[3], V w[3]) {
     __m256d a[4], b[4];
     for (int l = 0; l < 4; ++l) {
-      const double *p = rows + 8 * std::int64_t(i[l]), *q = rows + 8 * std::int64_t(j[l]);
+      const double *p = row_of<8>(rows, i[l]), *q = row_of<8>(rows, j[l]);
       a[l] = _mm256_sub_pd(_mm256_load_pd(p), _mm256_load_pd(q));
       b[l] = _mm256_add_pd(_mm256_load_pd(p + 4), _mm256_load_pd(q + 4));
     }
@@ -70,22 +70,25 @@ struct Avx2Pack : LawInDouble<Avx2Pack> {
     transpose(a, c), transpose(b, d);
     for (int k = 0; k < 3; ++k) u[k] = c[k], w[k] = d[k];
   }
-  GRANRAD_INLINE void pair_velocities_apart(const double* rows, const std::int32_t* i, const std::int32_t* j,
-                                            V u[3], V wi[3], V wj[3]) {
+  template <class Index>
+  GRANRAD_INLINE void pair_velocities_apart(const double* rows, const Index* i, const Index* j, V u[3],
+                                            V wi[3], V wj[3]) {
     V a[8], b[8];
     columns8(rows, i, a), columns8(rows, j, b);
     for (int k = 0; k < 3; ++k) u[k] = a[k] - b[k], wi[k] = a[k + 4], wj[k] = b[k + 4];
   }
-  GRANRAD_INLINE void columns4(const double* rows, const std::int32_t* i, V c[4]) {
+  template <class Index>
+  GRANRAD_INLINE void columns4(const double* rows, const Index* i, V c[4]) {
     __m256d r[4];
-    for (int l = 0; l < 4; ++l) r[l] = _mm256_load_pd(rows + 4 * std::int64_t(i[l]));
+    for (int l = 0; l < 4; ++l) r[l] = _mm256_load_pd(row_of<4>(rows, i[l]));
     transpose(r, c);
   }
-  GRANRAD_INLINE void columns8(const double* rows, const std::int32_t* i, V c[8]) {
+  template <class Index>
+  GRANRAD_INLINE void columns8(const double* rows, const Index* i, V c[8]) {
     __m256d r[4], s[4];
     for (int l = 0; l < 4; ++l) {
-      r[l] = _mm256_load_pd(rows + 8 * std::int64_t(i[l]));
-      s[l] = _mm256_load_pd(rows + 8 * std::int64_t(i[l]) + 4);
+      r[l] = _mm256_load_pd(row_of<8>(rows, i[l]));
+      s[l] = _mm256_load_pd(row_of<8>(rows, i[l]) + 4);
     }
     transpose(r, c), transpose(s, c + 4);
   }
@@ -98,22 +101,24 @@ struct Avx2Pack : LawInDouble<Avx2Pack> {
   GRANRAD_INLINE void add_to(std::int64_t* p, __m256i a) {
     _mm256_store_si256((__m256i*)p, _mm256_add_epi64(_mm256_load_si256((const __m256i*)p), a));
   }
-  GRANRAD_INLINE void add_pair(std::int64_t* rows, const std::int32_t* i, const std::int32_t* j, const I f[3],
+  template <class Index>
+  GRANRAD_INLINE void add_pair(std::int64_t* rows, const Index* i, const Index* j, const I f[3],
                                const I t[3]) {
     __m256i a[4], b[4];
     to_rows(f, a), to_rows(t, b);
     for (int l = 0; l < 4; ++l) {
-      std::int64_t *p = rows + 8 * std::int64_t(i[l]), *q = rows + 8 * std::int64_t(j[l]);
+      std::int64_t *p = row_of<8>(rows, i[l]), *q = row_of<8>(rows, j[l]);
       add_to(p, a[l]), add_to(p + 4, b[l]);
       _mm256_store_si256((__m256i*)q, _mm256_sub_epi64(_mm256_load_si256((const __m256i*)q), a[l]));
       add_to(q + 4, b[l]);
     }
   }
-  GRANRAD_INLINE void add_one(std::int64_t* rows, const std::int32_t* i, const I f[3], const I t[3]) {
+  template <class Index>
+  GRANRAD_INLINE void add_one(std::int64_t* rows, const Index* i, const I f[3], const I t[3]) {
     __m256i a[4], b[4];
     to_rows(f, a), to_rows(t, b);
     for (int l = 0; l < 4; ++l) {
-      std::int64_t* p = rows + 8 * std::int64_t(i[l]);
+      std::int64_t* p = row_of<8>(rows, i[l]);
       add_to(p, a[l]), add_to(p + 4, b[l]);
     }
   }

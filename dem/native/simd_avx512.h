@@ -54,46 +54,49 @@ struct Avx512Pack : LawInDouble<Avx512Pack> {
     c[0] = _mm512_permutex2var_pd(l0, even, l1), c[2] = _mm512_permutex2var_pd(l0, odd, l1);
     c[1] = _mm512_permutex2var_pd(h0, even, h1), c[3] = _mm512_permutex2var_pd(h0, odd, h1);
   }
-  template <class At>
-  GRANRAD_INLINE void pair_positions(const At& at, const std::int32_t* i, const std::int32_t* j, V d[4]) {
+  template <class At, class Index>
+  GRANRAD_INLINE void pair_positions(const At& at, const Index* i, const Index* j, V d[4]) {
     const __m256d sign = _mm256_setr_pd(-1, -1, -1, 1);  // a product with +-1 is exact, so fusing it is too
     __m256d r[8];
     for (int l = 0; l < 8; ++l)
       r[l] = _mm256_fmadd_pd(sign, _mm256_load_pd(at(j[l])), _mm256_load_pd(at(i[l])));
     transpose4(r, d);
   }
-  GRANRAD_INLINE void pair_velocities(const double* rows, const std::int32_t* i, const std::int32_t* j,
-                                      V u[3], V w[3]) {
+  template <class Index>
+  GRANRAD_INLINE void pair_velocities(const double* rows, const Index* i, const Index* j, V u[3], V w[3]) {
     const __m512d sign = _mm512_setr_pd(-1, -1, -1, -1, 1, 1, 1, 1);
     __m512d r[8];
     for (int l = 0; l < 8; ++l)
-      r[l] = _mm512_fmadd_pd(sign, _mm512_load_pd(rows + 8 * std::int64_t(j[l])),
-                             _mm512_load_pd(rows + 8 * std::int64_t(i[l])));
+      r[l] =
+          _mm512_fmadd_pd(sign, _mm512_load_pd(row_of<8>(rows, j[l])), _mm512_load_pd(row_of<8>(rows, i[l])));
     V c[8];
     transpose(r, c);
     for (int k = 0; k < 3; ++k) u[k] = c[k], w[k] = c[k + 4];
   }
-  GRANRAD_INLINE void pair_velocities_apart(const double* rows, const std::int32_t* i, const std::int32_t* j,
-                                            V u[3], V wi[3], V wj[3]) {
+  template <class Index>
+  GRANRAD_INLINE void pair_velocities_apart(const double* rows, const Index* i, const Index* j, V u[3],
+                                            V wi[3], V wj[3]) {
     __m512d r[8];
     __m256d s[8];
     for (int l = 0; l < 8; ++l) {
-      const __m512d a = _mm512_load_pd(rows + 8 * std::int64_t(i[l]));
-      r[l] = _mm512_mask_sub_pd(a, 0x0f, a, _mm512_load_pd(rows + 8 * std::int64_t(j[l])));
-      s[l] = _mm256_load_pd(rows + 8 * std::int64_t(j[l]) + 4);
+      const __m512d a = _mm512_load_pd(row_of<8>(rows, i[l]));
+      r[l] = _mm512_mask_sub_pd(a, 0x0f, a, _mm512_load_pd(row_of<8>(rows, j[l])));
+      s[l] = _mm256_load_pd(row_of<8>(rows, j[l]) + 4);
     }
     V c[8], d[4];
     transpose(r, c), transpose4(s, d);
     for (int k = 0; k < 3; ++k) u[k] = c[k], wi[k] = c[k + 4], wj[k] = d[k];
   }
-  GRANRAD_INLINE void columns4(const double* rows, const std::int32_t* i, V c[4]) {
+  template <class Index>
+  GRANRAD_INLINE void columns4(const double* rows, const Index* i, V c[4]) {
     __m256d r[8];
-    for (int l = 0; l < 8; ++l) r[l] = _mm256_load_pd(rows + 4 * std::int64_t(i[l]));
+    for (int l = 0; l < 8; ++l) r[l] = _mm256_load_pd(row_of<4>(rows, i[l]));
     transpose4(r, c);
   }
-  GRANRAD_INLINE void columns8(const double* rows, const std::int32_t* i, V c[8]) {
+  template <class Index>
+  GRANRAD_INLINE void columns8(const double* rows, const Index* i, V c[8]) {
     __m512d r[8];
-    for (int l = 0; l < 8; ++l) r[l] = _mm512_load_pd(rows + 8 * std::int64_t(i[l]));
+    for (int l = 0; l < 8; ++l) r[l] = _mm512_load_pd(row_of<8>(rows, i[l]));
     transpose(r, c);
   }
   GRANRAD_INLINE void to_rows(const I f[3], const I t[3], __m512i r[8]) {
@@ -103,22 +106,24 @@ struct Avx512Pack : LawInDouble<Avx512Pack> {
     transpose(columns, rows);
     for (int l = 0; l < 8; ++l) r[l] = (__m512i)rows[l];
   }
-  GRANRAD_INLINE void add_pair(std::int64_t* rows, const std::int32_t* i, const std::int32_t* j, const I f[3],
+  template <class Index>
+  GRANRAD_INLINE void add_pair(std::int64_t* rows, const Index* i, const Index* j, const I f[3],
                                const I t[3]) {
     __m512i r[8];
     to_rows(f, t, r);
     for (int l = 0; l < 8; ++l) {
-      std::int64_t *a = rows + 8 * std::int64_t(i[l]), *b = rows + 8 * std::int64_t(j[l]);
+      std::int64_t *a = row_of<8>(rows, i[l]), *b = row_of<8>(rows, j[l]);
       _mm512_store_si512(a, _mm512_add_epi64(_mm512_load_si512(a), r[l]));
       const __m512i old = _mm512_load_si512(b);
       _mm512_store_si512(b, _mm512_mask_sub_epi64(_mm512_add_epi64(old, r[l]), 0x0f, old, r[l]));
     }
   }
-  GRANRAD_INLINE void add_one(std::int64_t* rows, const std::int32_t* i, const I f[3], const I t[3]) {
+  template <class Index>
+  GRANRAD_INLINE void add_one(std::int64_t* rows, const Index* i, const I f[3], const I t[3]) {
     __m512i r[8];
     to_rows(f, t, r);
     for (int l = 0; l < 8; ++l) {
-      std::int64_t* a = rows + 8 * std::int64_t(i[l]);
+      std::int64_t* a = row_of<8>(rows, i[l]);
       _mm512_store_si512(a, _mm512_add_epi64(_mm512_load_si512(a), r[l]));
     }
   }

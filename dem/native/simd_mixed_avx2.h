@@ -54,23 +54,22 @@ struct Avx2Mixed : LawInSingle {
       b[k] = _mm256_permute2f128_ps(quad[0][k], quad[1][k], 0x31);
     }
   }
-  template <class Rows>
-  GRANRAD_INLINE void pair_velocities(const Rows* rows, const std::int32_t* i, const std::int32_t* j, V u[3],
-                                      V w[3]) {
+  template <class Rows, class Index>
+  GRANRAD_INLINE void pair_velocities(const Rows* rows, const Index* i, const Index* j, V u[3], V w[3]) {
     const __m256 flip = _mm256_setr_ps(-0.0f, -0.0f, -0.0f, -0.0f, 0, 0, 0, 0);
     __m256 r[8];
     for (int l = 0; l < 8; ++l)
-      r[l] = _mm256_add_ps(_mm256_load_ps(rows[i[l]].velocity),
-                           _mm256_xor_ps(flip, _mm256_load_ps(rows[j[l]].velocity)));
+      r[l] = _mm256_add_ps(_mm256_load_ps(row_at(rows, i[l])->velocity),
+                           _mm256_xor_ps(flip, _mm256_load_ps(row_at(rows, j[l])->velocity)));
     transpose(r, u, w);
   }
-  template <class Rows>
-  GRANRAD_INLINE void pair_velocities_apart(const Rows* rows, const std::int32_t* i, const std::int32_t* j,
-                                            V u[3], V wi[3], V wj[3]) {
+  template <class Rows, class Index>
+  GRANRAD_INLINE void pair_velocities_apart(const Rows* rows, const Index* i, const Index* j, V u[3], V wi[3],
+                                            V wj[3]) {
     __m256 r[8], s[8];
     for (int l = 0; l < 8; ++l) {
-      r[l] = _mm256_load_ps(rows[i[l]].velocity);
-      s[l] = _mm256_load_ps(rows[j[l]].velocity);
+      r[l] = _mm256_load_ps(row_at(rows, i[l])->velocity);
+      s[l] = _mm256_load_ps(row_at(rows, j[l])->velocity);
     }
     V vi[3], vj[3];
     transpose(r, vi, wi), transpose(s, vj, wj);

@@ -38,9 +38,10 @@ struct Avx512Mixed : LawInSingle {
   GRANRAD_INLINE __m512i to_fixed(Avx512Pack::V a) { return Avx512Pack::to_fixed(a); }
 
   /// Rows of contacts `row` and `row + 4`.
-  template <class Rows>
-  GRANRAD_INLINE __m512 two_rows(const Rows* rows, const std::int32_t* row) {
-    return join(_mm256_load_ps(rows[row[0]].velocity), _mm256_load_ps(rows[row[4]].velocity));
+  template <class Rows, class Index>
+  GRANRAD_INLINE __m512 two_rows(const Rows* rows, const Index* row) {
+    return join(_mm256_load_ps(row_at(rows, row[0])->velocity),
+                _mm256_load_ps(row_at(rows, row[4])->velocity));
   }
   /// Rows {a, b} of sixteen contacts to the columns of a and of b. r[l] holds contacts l and l + 4 for l < 4,
   /// l + 4 and l + 8 else.
@@ -60,9 +61,8 @@ struct Avx512Mixed : LawInSingle {
     }
   }
   GRANRAD_INLINE int first_of(int l) { return l < 4 ? l : l + 4; }
-  template <class Rows>
-  GRANRAD_INLINE void pair_velocities(const Rows* rows, const std::int32_t* i, const std::int32_t* j, V u[3],
-                                      V w[3]) {
+  template <class Rows, class Index>
+  GRANRAD_INLINE void pair_velocities(const Rows* rows, const Index* i, const Index* j, V u[3], V w[3]) {
     const __m256 half = _mm256_setr_ps(-0.0f, -0.0f, -0.0f, -0.0f, 0, 0, 0, 0);
     const __m512 flip = join(half, half);
     __m512 r[8];
@@ -71,9 +71,9 @@ struct Avx512Mixed : LawInSingle {
                            _mm512_xor_ps(flip, two_rows(rows, j + first_of(l))));
     transpose(r, u, w);
   }
-  template <class Rows>
-  GRANRAD_INLINE void pair_velocities_apart(const Rows* rows, const std::int32_t* i, const std::int32_t* j,
-                                            V u[3], V wi[3], V wj[3]) {
+  template <class Rows, class Index>
+  GRANRAD_INLINE void pair_velocities_apart(const Rows* rows, const Index* i, const Index* j, V u[3], V wi[3],
+                                            V wj[3]) {
     __m512 r[8], s[8];
     for (int l = 0; l < 8; ++l)
       r[l] = two_rows(rows, i + first_of(l)), s[l] = two_rows(rows, j + first_of(l));

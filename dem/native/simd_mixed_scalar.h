@@ -28,16 +28,15 @@ struct ScalarMixed : LawInSingle {
   GRANRAD_INLINE void widen(V a, double out[1]) { out[0] = a; }
   /// To the nearest integer, ties to even, of |a| < 2^51: enough for forces of 24 bits.
   GRANRAD_INLINE std::int64_t to_fixed(double a) { return ScalarPack::to_fixed(a); }
-  template <class Rows>
-  GRANRAD_INLINE void pair_velocities(const Rows* rows, const std::int32_t* i, const std::int32_t* j, V u[3],
-                                      V w[3]) {
-    const float *a = rows[*i].velocity, *b = rows[*j].velocity;
+  template <class Rows, class Index>
+  GRANRAD_INLINE void pair_velocities(const Rows* rows, const Index* i, const Index* j, V u[3], V w[3]) {
+    const float *a = row_at(rows, *i)->velocity, *b = row_at(rows, *j)->velocity;
     for (int k = 0; k < 3; ++k) u[k] = a[k] - b[k], w[k] = a[k + 4] + b[k + 4];
   }
-  template <class Rows>
-  GRANRAD_INLINE void pair_velocities_apart(const Rows* rows, const std::int32_t* i, const std::int32_t* j,
-                                            V u[3], V wi[3], V wj[3]) {
-    const float *a = rows[*i].velocity, *b = rows[*j].velocity;
+  template <class Rows, class Index>
+  GRANRAD_INLINE void pair_velocities_apart(const Rows* rows, const Index* i, const Index* j, V u[3], V wi[3],
+                                            V wj[3]) {
+    const float *a = row_at(rows, *i)->velocity, *b = row_at(rows, *j)->velocity;
     for (int k = 0; k < 3; ++k) u[k] = a[k] - b[k], wi[k] = a[k + 4], wj[k] = b[k + 4];
   }
 };

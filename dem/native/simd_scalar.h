@@ -35,41 +35,46 @@ struct ScalarPack : LawInDouble<ScalarPack> {
   GRANRAD_INLINE void prefetch(const void* p) { __builtin_prefetch(p); }
 
   /// d: difference of the positions and sum of the reaches.
-  template <class At>
-  GRANRAD_INLINE void pair_positions(const At& at, const std::int32_t* i, const std::int32_t* j, V d[4]) {
+  template <class At, class Index>
+  GRANRAD_INLINE void pair_positions(const At& at, const Index* i, const Index* j, V d[4]) {
     const double *a = at(*i), *b = at(*j);
     for (int k = 0; k < 3; ++k) d[k] = a[k] - b[k];
     d[3] = a[3] + b[3];
   }
   /// u: difference of the velocities, w: sum of the spins.
-  GRANRAD_INLINE void pair_velocities(const double* rows, const std::int32_t* i, const std::int32_t* j,
-                                      V u[3], V w[3]) {
-    const double *a = rows + 8 * std::int64_t(*i), *b = rows + 8 * std::int64_t(*j);
+  template <class Index>
+  GRANRAD_INLINE void pair_velocities(const double* rows, const Index* i, const Index* j, V u[3], V w[3]) {
+    const double *a = row_of<8>(rows, *i), *b = row_of<8>(rows, *j);
     for (int k = 0; k < 3; ++k) u[k] = a[k] - b[k], w[k] = a[k + 4] + b[k + 4];
   }
   /// u: difference of the velocities, wi and wj: the two spins.
-  GRANRAD_INLINE void pair_velocities_apart(const double* rows, const std::int32_t* i, const std::int32_t* j,
-                                            V u[3], V wi[3], V wj[3]) {
-    const double *a = rows + 8 * std::int64_t(*i), *b = rows + 8 * std::int64_t(*j);
+  template <class Index>
+  GRANRAD_INLINE void pair_velocities_apart(const double* rows, const Index* i, const Index* j, V u[3],
+                                            V wi[3], V wj[3]) {
+    const double *a = row_of<8>(rows, *i), *b = row_of<8>(rows, *j);
     for (int k = 0; k < 3; ++k) u[k] = a[k] - b[k], wi[k] = a[k + 4], wj[k] = b[k + 4];
   }
   /// Four columns of rows of four doubles.
-  GRANRAD_INLINE void columns4(const double* rows, const std::int32_t* i, V c[4]) {
-    for (int k = 0; k < 4; ++k) c[k] = rows[4 * std::int64_t(*i) + k];
+  template <class Index>
+  GRANRAD_INLINE void columns4(const double* rows, const Index* i, V c[4]) {
+    for (int k = 0; k < 4; ++k) c[k] = row_of<4>(rows, *i)[k];
   }
   /// Eight columns of rows of eight doubles.
-  GRANRAD_INLINE void columns8(const double* rows, const std::int32_t* i, V c[8]) {
-    for (int k = 0; k < 8; ++k) c[k] = rows[8 * std::int64_t(*i) + k];
+  template <class Index>
+  GRANRAD_INLINE void columns8(const double* rows, const Index* i, V c[8]) {
+    for (int k = 0; k < 8; ++k) c[k] = row_of<8>(rows, *i)[k];
   }
   /// Adds (f, t) to the force rows of i, (-f, t) to those of j. Rows may repeat.
-  GRANRAD_INLINE void add_pair(std::int64_t* rows, const std::int32_t* i, const std::int32_t* j, const I f[3],
+  template <class Index>
+  GRANRAD_INLINE void add_pair(std::int64_t* rows, const Index* i, const Index* j, const I f[3],
                                const I t[3]) {
-    std::int64_t *a = rows + 8 * std::int64_t(*i), *b = rows + 8 * std::int64_t(*j);
+    std::int64_t *a = row_of<8>(rows, *i), *b = row_of<8>(rows, *j);
     for (int k = 0; k < 3; ++k) a[k] += f[k], a[k + 4] += t[k], b[k] -= f[k], b[k + 4] += t[k];
   }
   /// Adds (f, t) to the force rows of i.
-  GRANRAD_INLINE void add_one(std::int64_t* rows, const std::int32_t* i, const I f[3], const I t[3]) {
-    std::int64_t* a = rows + 8 * std::int64_t(*i);
+  template <class Index>
+  GRANRAD_INLINE void add_one(std::int64_t* rows, const Index* i, const I f[3], const I t[3]) {
+    std::int64_t* a = row_of<8>(rows, *i);
     for (int k = 0; k < 3; ++k) a[k] += f[k], a[k + 4] += t[k];
   }
 

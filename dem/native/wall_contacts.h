@@ -101,7 +101,7 @@ class WallContacts {
   std::vector<Near> near_;
   std::vector<Border> borders_;
   std::vector<std::int32_t> border_facets_;
-  std::vector<std::int32_t> rows_, facets_;  ///< plane contacts
+  std::vector<RowOffset> rows_, facets_;  ///< plane contacts
   std::vector<std::int64_t> features_;
   AlignedVector<double> displacement_[3];
   ContactColumns varied_;
