@@ -1,6 +1,5 @@
 #include "dem/native/free_rows.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace granrad::native {
@@ -27,15 +26,14 @@ void FreeRows::choose(WallContacts::Range range, const PairList& own, const Pair
   own.visit_tight([&](std::int32_t i, std::int32_t j) { bind(i), bind(j); });
   cross.visit_tight([&](std::int32_t i, std::int32_t) { bind(i); });
   walls.visit_rows(bind);
-  bound_.clear(), free_.clear();
+  bound_.clear(), free_.clear(), bound_before_.clear();
+  begin_ = range.begin;
   for (auto i = range.begin; i < range.end; ++i) {
     const bool bound = is_bound_[i - range.begin] || !stays_in_limit(rows, i, move, steps);
+    bound_before_.push_back(static_cast<std::int32_t>(bound_.size()));
     (bound ? bound_ : free_).push_back(static_cast<std::int32_t>(i));
   }
-}
-
-std::int64_t FreeRows::bound_before(std::int64_t row, std::int64_t from) const {
-  return std::lower_bound(bound_.begin() + from, bound_.end(), row) - bound_.begin();
+  bound_before_.push_back(static_cast<std::int32_t>(bound_.size()));
 }
 
 }  // namespace granrad::native

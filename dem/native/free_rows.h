@@ -20,12 +20,14 @@ class FreeRows {
               const WallContacts& walls, const Rows& rows, const MoveConstants& move, std::int64_t steps);
   const std::vector<std::int32_t>& bound() const { return bound_; }  ///< ascending
   const std::vector<std::int32_t>& free() const { return free_; }
-  /// How many bound rows there are before `row`, of which the first `from` are.
-  std::int64_t bound_before(std::int64_t row, std::int64_t from) const;
+  /// How many bound rows there are before `row` of the range or its end.
+  std::int64_t bound_before(std::int64_t row) const { return bound_before_[row - begin_]; }
 
  private:
   std::vector<std::int32_t> bound_, free_;
-  std::vector<std::uint8_t> is_bound_;  ///< by row of the range
+  std::vector<std::uint8_t> is_bound_;      ///< by row of the range
+  std::vector<std::int32_t> bound_before_;  ///< by row of the range and for its end
+  std::int64_t begin_ = 0;                  ///< of the range
 };
 
 }  // namespace granrad::native

@@ -15,60 +15,87 @@ struct KernelBodies {
     for (int a = 0; a < 3; ++a) out[a] = S::to_fixed(v[a] * scale);
   }
 
+  struct AtPlane {
+    V height, radius, overlap, normal[3], velocity[3], spin[3];
+    bool live;
+  };
+  template <bool varied>
+  GRANRAD_INLINE void gather_plane(const RowView& rows, const ContactView& c, const PlaneView& planes,
+                                   const StepConstants& constants, std::int64_t k, AtPlane& in) {
+    V p[4], v[8], plane[8], slide[4];
+    S::columns4(rows.position, c.first + k, p);
+    S::columns8(planes.geometry, c.second + k, plane);
+    in.height = (p[0] - plane[0]) * plane[4] + (p[1] - plane[1]) * plane[5] + (p[2] - plane[2]) * plane[6];
+    in.radius = varied ? S::load(Pairs::column(c, BodyColumn::first_radius, k)) : S::set(constants.radius);
+    in.overlap = in.radius - S::abs(in.height);
+    in.live = S::any(S::less(V{}, in.overlap));
+    if (!in.live) return;
+    S::columns8(rows.velocity, c.first + k, v);
+    S::columns4(planes.velocity, c.second + k, slide);
+    const auto behind = S::less(in.height, V{});
+    for (int a = 0; a < 3; ++a) {
+      in.normal[a] = S::negate_where(behind, plane[4 + a]);
+      in.velocity[a] = v[a] - slide[a], in.spin[a] = v[4 + a];
+    }
+  }
+
+  template <bool varied>
+  GRANRAD_INLINE void plane_contact(const RowView& rows, const ContactView& c, const StepConstants& constants,
+                                    const typename Pairs::Law& uniform, std::int64_t k, const AtPlane& in,
+                                    typename Pairs::Worst& worst) {
+    if (!in.live) {
+      for (auto* s : c.displacement) S::store(s + k, V{});
+      return;
+    }
+    ContactState<S> state;
+    state.overlap = in.overlap;
+    const V r = in.radius, arm = r - S::set(0.5) * state.overlap;
+    for (int a = 0; a < 3; ++a) {
+      state.normal[a] = in.normal[a], state.velocity[a] = in.velocity[a];
+      state.arm_spin[a] = arm * in.spin[a];
+      state.displacement[a] = S::load(c.displacement[a] + k);
+    }
+    if (c.touch_sum) {
+      const V area = S::set(4 * quarter_pi) * S::max(r * r - in.height * in.height, S::set(0.0));
+      double* sum = c.touch_sum + k;
+      S::store(sum, S::load(sum) + S::round(S::sqrt(area) * S::set(constants.touch_units)));
+    }
+    const typename Pairs::Law law = varied ? Pairs::varied_law(c, k) : uniform;
+    const auto result = ContactLaw::force<S>(law, S::set(constants.step_s), state);
+    worst.beyond = S::max(worst.beyond, state.overlap - S::set(deepest_overlap) * r);
+    V torque[3];
+    for (int a = 0; a < 3; ++a) {
+      S::store(c.displacement[a] + k, state.displacement[a]);
+      torque[a] = -arm * result.moment[a];
+    }
+    if constexpr (varied) {
+      V roll[3];
+      ContactLaw::rolling_torque<S>(law, result.elastic, state.normal, in.spin, roll);
+      for (int a = 0; a < 3; ++a) torque[a] += roll[a];
+    }
+    const auto scale = [&](BodyColumn n, double uniform_scale) {
+      return varied ? S::load(Pairs::column(c, n, k)) : S::set(uniform_scale);
+    };
+    const V force_scale = scale(BodyColumn::first_force_scale, constants.scales.force);
+    worst.force = S::max(worst.force, force_scale * Pairs::largest_component(result.force));
+    I f[3], t[3];
+    to_fixed3(result.force, force_scale, f);
+    to_fixed3(torque, scale(BodyColumn::first_torque_scale, constants.scales.torque), t);
+    S::add_one(rows.force, c.first + k, f, t);
+  }
+
+  /// The next pack is gathered before the law of one is worked: see PairBodies::loop.
   template <bool varied>
   static WorstContact plane_loop(const RowView& rows, const ContactView& c, const PlaneView& planes,
                                  const StepConstants& constants) {
     const typename Pairs::Law uniform = Pairs::broadcast(constants.wall);
     typename Pairs::Worst worst;
-    for (std::int64_t k = 0; k < c.count; k += W) {
-      V p[4], v[8], plane[8], slide[4];
-      S::columns4(rows.position, c.first + k, p);
-      S::columns8(planes.geometry, c.second + k, plane);
-      V h = (p[0] - plane[0]) * plane[4] + (p[1] - plane[1]) * plane[5] + (p[2] - plane[2]) * plane[6];
-      const auto behind = S::less(h, V{});
-      ContactState<S> state;
-      const V r = varied ? S::load(Pairs::column(c, BodyColumn::first_radius, k)) : S::set(constants.radius);
-      state.overlap = r - S::abs(h);
-      if (!S::any(S::less(V{}, state.overlap))) {
-        for (auto* s : c.displacement) S::store(s + k, V{});
-        continue;
-      }
-      S::columns8(rows.velocity, c.first + k, v);
-      S::columns4(planes.velocity, c.second + k, slide);
-      const V arm = r - S::set(0.5) * state.overlap;
-      for (int a = 0; a < 3; ++a) {
-        state.normal[a] = S::negate_where(behind, plane[4 + a]);
-        state.velocity[a] = v[a] - slide[a];
-        state.arm_spin[a] = arm * v[4 + a];
-        state.displacement[a] = S::load(c.displacement[a] + k);
-      }
-      if (c.touch_sum) {
-        const V area = S::set(4 * quarter_pi) * S::max(r * r - h * h, S::set(0.0));
-        double* sum = c.touch_sum + k;
-        S::store(sum, S::load(sum) + S::round(S::sqrt(area) * S::set(constants.touch_units)));
-      }
-      const typename Pairs::Law law = varied ? Pairs::varied_law(c, k) : uniform;
-      const auto result = ContactLaw::force<S>(law, S::set(constants.step_s), state);
-      worst.beyond = S::max(worst.beyond, state.overlap - S::set(deepest_overlap) * r);
-      V torque[3];
-      for (int a = 0; a < 3; ++a) {
-        S::store(c.displacement[a] + k, state.displacement[a]);
-        torque[a] = -arm * result.moment[a];
-      }
-      if constexpr (varied) {
-        V roll[3];
-        ContactLaw::rolling_torque<S>(law, result.elastic, state.normal, v + 4, roll);
-        for (int a = 0; a < 3; ++a) torque[a] += roll[a];
-      }
-      const auto scale = [&](BodyColumn n, double uniform_scale) {
-        return varied ? S::load(Pairs::column(c, n, k)) : S::set(uniform_scale);
-      };
-      const V force_scale = scale(BodyColumn::first_force_scale, constants.scales.force);
-      worst.force = S::max(worst.force, force_scale * Pairs::largest_component(result.force));
-      I f[3], t[3];
-      to_fixed3(result.force, force_scale, f);
-      to_fixed3(torque, scale(BodyColumn::first_torque_scale, constants.scales.torque), t);
-      S::add_one(rows.force, c.first + k, f, t);
+    AtPlane in[2];
+    if (c.count > 0) gather_plane<varied>(rows, c, planes, constants, 0, in[0]);
+    for (std::int64_t p = 0; p < c.count / W; ++p) {
+      if ((p + 1) * W < c.count)
+        gather_plane<varied>(rows, c, planes, constants, (p + 1) * W, in[(p + 1) & 1]);
+      plane_contact<varied>(rows, c, constants, uniform, p * W, in[p & 1], worst);
     }
     return {Pairs::largest(worst.beyond), Pairs::largest(worst.force)};
   }

@@ -152,7 +152,7 @@ std::int64_t NativeEngine::Impl::run(std::int64_t steps, bool finishes, bool& li
       const auto& bound = share.rows.bound();
       std::int64_t moved = 0;
       const auto move_rows_before = [&](std::int64_t row) {
-        const auto end = share.rows.bound_before(row, moved);
+        const auto end = share.rows.bound_before(row);
         too_fast |=
             kernels.move(view, bound.data() + moved, end - moved, model.move, finishes && k + 1 == steps);
         moved = end;
