@@ -165,22 +165,19 @@ std::optional<ConvexCell> ConvexCell::from(const Facets& facets) {
 }
 
 FacetHit ConvexCell::exit(const Facets& facets, const Vec3& origin, const Vec3& direction) const {
-  std::size_t nearest = planes_.size();
+  std::size_t nearest = planes_.size(), hidden_by = planes_.size();
   double distance = infinity, deepest = -facets.tolerance();
-  bool behind = false;
-  for (std::size_t k = 0; k < planes_.size(); ++k) {
+  for (std::size_t k = 0; k < planes_.size(); ++k) {  // selections, for no branch foresees which plane it is
     const Plane& plane = planes_[k];
     const double h = dot(plane.normal, origin) - plane.offset, approach = -dot(plane.normal, direction);
-    if (h < deepest) {
-      deepest = h;
-      distance = 0;
-      behind = true;
-      nearest = k;
-    } else if (!behind && approach > 0 && h < distance * approach) {
-      distance = std::max(0.0, h / approach);
-      nearest = k;
-    }
+    const double t = approach > 0 ? h / approach : infinity;
+    hidden_by = h < deepest ? k : hidden_by;
+    deepest = h < deepest ? h : deepest;
+    nearest = t < distance ? k : nearest;
+    distance = t < distance ? t : distance;
   }
+  distance = std::max(0.0, distance);
+  if (hidden_by != planes_.size()) nearest = hidden_by, distance = 0;
   if (nearest == planes_.size()) return {infinity, -1};
   const auto& face = faces_[nearest];
   if (face.size() == 1) return {distance, face[0]};

@@ -130,8 +130,10 @@ double PathStarts::most_walks_per_m2() const {
   return *std::max_element(walks_per_m2_.begin(), walks_per_m2_.end());
 }
 
-std::int32_t PathStarts::surface_at(double u) const {
+std::int32_t PathStarts::surface_at(double u, std::int32_t before) const {
   const double all = cumulative_.back(), target = std::min(u * all, all * (1 - 0x1p-53));
+  const auto b = static_cast<std::size_t>(before);
+  if (target < cumulative_[b] && (b == 0 || target >= cumulative_[b - 1])) return before;
   const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), target);
   return static_cast<std::int32_t>(found - cumulative_.begin());
 }

@@ -52,7 +52,9 @@ class PathStarts {
   /// sum eps_i A_i over the surfaces that emit, m^2. 0: no walk can start.
   double emission_area_m2() const { return emission_area_m2_; }
   /// Surface at the fraction u in [0, 1) of all starts.
-  std::int32_t surface_at(double u) const;
+  std::int32_t surface_at(double u) const { return surface_at(u, 0); }
+  /// Found at once where it is that of the start before.
+  std::int32_t surface_at(double u, std::int32_t before) const;
   /// Exchange area that a whole walk between i and j stands for, m^2: 1/(1/g_i + 1/g_j), g = eps A / walks.
   double area_per_walk_m2(std::int32_t i, std::int32_t j) const {
     return 1 / (walks_per_m2_[i] + walks_per_m2_[j]);

@@ -29,7 +29,8 @@ struct PathTally {
   std::vector<Quanta>
       clear_heat;  ///< the same by clear flights, what is expected of them taken off; empty: none
   WalkMoments moments;
-  double given_W = 0;  ///< by walls, of the walk under way
+  std::int32_t start = 0;  ///< of the walk under way
+  double given_W = 0;      ///< by walls, of the walk under way
   EmbreeTracer::Crossed crossed;
   std::int64_t segments = 0, lost = 0;
 

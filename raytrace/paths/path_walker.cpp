@@ -79,7 +79,7 @@ Emission PathWalker::leave(const Hit& hit, std::uint64_t number, std::uint64_t e
 
 void PathWalker::walk(const StartLattice& lattice, std::int64_t k, std::uint64_t number,
                       PathTally& tally) const {
-  const std::int32_t start = starts_.surface_at(lattice.position(k));
+  const std::int32_t start = tally.start = starts_.surface_at(lattice.position(k), tally.start);
   const auto [u0, u1, u2, u3] = lattice.uniforms(k);
   const Emission ray = emitter_.emit(start, u0, u1, u2, u3);
   if (flights_.idle())
