@@ -30,8 +30,10 @@ std::string closest_word(std::string_view word, const std::vector<std::string>& 
   const std::size_t third = (word.size() + 1) / 3;
   std::size_t best_distance = std::max<std::size_t>(1, third) + 1;
   for (const auto& candidate : candidates) {
+    const std::size_t longer = std::max(word.size(), candidate.size());
+    if (longer - std::min(word.size(), candidate.size()) >= best_distance) continue;
     const std::size_t distance = edit_distance(word, candidate);
-    if (distance < best_distance && distance < std::max(word.size(), candidate.size())) {
+    if (distance < best_distance && distance < longer) {
       best = candidate;
       best_distance = distance;
     }

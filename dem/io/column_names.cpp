@@ -179,8 +179,7 @@ void ColumnNames::refuse_near_misses() {
     if (taken(c) || (text.size() < 4 && !is_some_t) || text.find("magnitude") != text.npos) continue;
     std::string meant = is_some_t ? "temperature" : closest_word(text, known_words);
     for (const std::string& word : known_words)
-      if (text.starts_with(word + "_") || text.starts_with(word + " ") || text.starts_with(word + "(") ||
-          text.starts_with(word + "["))
+      if (text.starts_with(word) && std::string_view("_ ([").find(text.c_str()[word.size()]) != text.npos)
         meant = word;
     if (meant.empty()) continue;
     const Quantity quantity = meaning(meant);
