@@ -28,7 +28,7 @@ constexpr double default_radiation_interval_s = 0.01;
 constexpr double default_heat_error = 0.01;
 constexpr double default_walks = 10000;  // paths, per update: 1 % noise in the wall heat needs about 1300
 constexpr double default_rays_per_particle = 2000;
-constexpr double default_line_ends_per_particle = 24000;  // 500 directions; lines are far cheaper than rays
+constexpr double default_line_ends_per_particle = 24000;  // 250 directions; lines are far cheaper than rays
 
 constexpr double default_rays_of_walls = 300;  // correlation with traced walls: of the walls, per particle
 constexpr double default_wall_rays_per_particle = 200;  // shading: sent by the walls

@@ -52,9 +52,12 @@ int line_threads(int asked) {
 }
 
 LineOptions lines_for_rays(double rays_per_particle) {
-  constexpr double ends_of_500_directions = 24000;
+  // In channels of hard spheres at solid fractions of .07 to .43, 24 000 ends along 250 directions against 500: heats of the
+  // particles .23 against .24 and .36 against .42 % rms, those of the walls alike, in about two thirds of the time; with
+  // 12 000 the walls are worse by a third.
+  constexpr double enough = 16000;
   LineOptions options;
-  options.lines_per_disc = rays_per_particle > ends_of_500_directions ? 12 : 6;
+  options.lines_per_disc = rays_per_particle > enough ? 12 : 6;
   const double per_direction = 2 * options.lines_per_disc * options.replicates;
   options.directions = std::max(8, static_cast<int>(std::lround(rays_per_particle / per_direction)));
   return options;

@@ -13,8 +13,8 @@ void check_line_options(const LineOptions& options);
 int line_threads(int asked);
 
 /// Options that give `rays_per_particle` line ends to a small sphere: every line through its disc ends on it twice.
-/// Directions first (500 keep the scatter between directions below that between lines), then more lines per disc for
-/// the fluxes of single particles.
+/// Directions first, as the heats of walls need; above 16 000 ends twice as many lines per disc, as the fluxes of single
+/// particles do.
 LineOptions lines_for_rays(double rays_per_particle);
 
 /// Throws InputError for a sweep of more than 2e9 lines (half a minute of a core and more) nearly all of which no sphere
