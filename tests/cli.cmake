@@ -6,7 +6,7 @@ function(granrad_cli_test name)
   add_dependencies(test_cli_${name} granrun)
 endfunction()
 
-granrad_test(unit/scaling granrad_granrun)
+granrad_test(unit/scaling granrad_forecast)
 granrad_cli_test(granrun_keys granrad_granrun granrad_study)
 granrad_cli_test(granrun_usage granrad_flags)
 granrad_cli_test(granrun_bad_input granrad_flags)

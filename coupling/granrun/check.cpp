@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "coupling/forecast/forecast.h"
+#include "coupling/forecast/scaling.h"
 #include "coupling/granrun/case_notes.h"
-#include "coupling/granrun/forecast.h"
-#include "coupling/granrun/scaling.h"
 #include "coupling/heat/wall_coefficients.h"
 #include "coupling/simulation/radiation_source.h"
 #include "coupling/simulation/simulation.h"

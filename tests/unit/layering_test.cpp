@@ -87,7 +87,8 @@ const std::map<std::string, std::vector<std::string>> arrows = [] {
   const Folders results = join({simulation, {"coupling/results/"}});
   const Folders validate =
       join({simulation, {"dem/page/", "coupling/granrun/run_options.h", "coupling/validate/"}});
-  const Folders granrun = join({results, validate, {"coupling/granrun/"}});
+  const Folders forecast = join({validate, {"coupling/forecast/"}});
+  const Folders granrun = join({results, forecast, {"coupling/granrun/"}});
   return std::map<std::string, Folders>{
       {"dem/", engine},
       {"dem/base/", {"dem/base/"}},
@@ -122,6 +123,7 @@ const std::map<std::string, std::vector<std::string>> arrows = [] {
       {"coupling/simulation/", simulation},
       {"coupling/results/", results},
       {"coupling/validate/", validate},
+      {"coupling/forecast/", forecast},
       {"coupling/granrun/", granrun},
       {"coupling/granrun/granrun.cpp",
        join({granrun, {"coupling/measure/measure_command.h", "coupling/study/run_study.h"}})},

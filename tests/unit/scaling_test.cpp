@@ -1,6 +1,6 @@
 // Requirement: the forecast for ranks shares what ranks share and repeats what they repeat, finds where more of them stop
 // helping, and the job for Slurm asks for the time and memory of the forecast and goes on where they were too short.
-#include "coupling/granrun/scaling.h"
+#include "coupling/forecast/scaling.h"
 
 #include <gtest/gtest.h>
 

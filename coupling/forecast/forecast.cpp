@@ -1,4 +1,4 @@
-#include "coupling/granrun/forecast.h"
+#include "coupling/forecast/forecast.h"
 
 #include <omp.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "coupling/granrun/flow_speed.h"
+#include "coupling/forecast/flow_speed.h"
 #include "coupling/simulation/heat_model.h"
 #include "coupling/validate/update_cost.h"
 #include "dem/base/clock.h"

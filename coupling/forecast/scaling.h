@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "coupling/granrun/forecast.h"
+#include "coupling/forecast/forecast.h"
 
 namespace granrad {
 

@@ -1,4 +1,4 @@
-#include "coupling/granrun/scaling.h"
+#include "coupling/forecast/scaling.h"
 
 #include <fmt/format.h>
 

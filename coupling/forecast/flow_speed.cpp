@@ -1,4 +1,4 @@
-#include "coupling/granrun/flow_speed.h"
+#include "coupling/forecast/flow_speed.h"
 
 #include <algorithm>
 #include <cmath>
