@@ -102,62 +102,74 @@ double seconds_of_a_later_update(const Case& c, const Bed& bed, int threads) {
   return (monotonic_s() - start) * walks;
 }
 
+void foresee_radiation(const Case& c, const Bed& bed, const TimePlan& plan, int threads, Forecast& cost) {
+  if (plan.ticks_per_radiation == 0) return;
+  const bool moves = c.flow.engine != EngineKind::none, empty = bed.size() == 0;
+  const bool walks = c.heat.radiation.kind == RadiationKind::paths;  // ranks share them
+  const double updates =
+      std::ceil(static_cast<double>(plan.end_tick) / static_cast<double>(plan.ticks_per_radiation));
+  cost.radiation_updates = moves || walks ? updates : 1;
+  const double times =
+      (moves ? updates : 1) * (empty ? 1 : cost.mean_count / static_cast<double>(bed.size()));
+  const UpdateSeconds update = seconds_of_an_update(c, bed, threads);
+  const double later = moves || empty ? 0 : (updates - 1) * seconds_of_a_later_update(c, bed, threads);
+  cost.radiation_s = update.all * times + later;
+  cost.radiation_repeated_s = update.repeated * times + (walks ? 0 : later);
+}
+
+/// By a trial of the bed at time 0.
+void try_flow_and_conduction(const Case& c, const Bed& bed, const TimePlan& plan, int threads,
+                             Forecast& cost) {
+  Case still = c;
+  still.heat.radiation.kind = RadiationKind::none;
+  Simulation trial(still, threads);
+  trial.start();
+  trial.advance();  // lists are made, threads started
+  std::vector<double> flow, conduction;
+  for (const double start = monotonic_s(); monotonic_s() - start < trial_s && !trial.finished();) {
+    const PartSeconds before = trial.seconds();
+    trial.advance();
+    flow.push_back(trial.seconds().flow - before.flow);
+    conduction.push_back(trial.seconds().conduction - before.conduction);
+  }
+  if (flow.empty()) flow.push_back(trial.seconds().flow), conduction.push_back(trial.seconds().conduction);
+  const double more = cost.heat_steps * cost.mean_count / static_cast<double>(bed.size());
+  cost.flow_s = undisturbed_mean(flow) * more * plan.tick_s / trial.plan().tick_s;
+  cost.conduction_s = undisturbed_mean(conduction) * more;
+}
+
+/// Where the bed of time 0 has no contacts yet, is empty or too large to try.
+void foresee_flow_in_contact(const Case& c, const TimePlan& plan, int threads, Forecast& cost) {
+  const bool moves = c.flow.engine != EngineKind::none;
+  const bool poured = c.flow.feed.kind == FeedSettings::Kind::hopper && norm(c.flow.gravity_m_s2) > 0;
+  if (!poured && (cost.flow_s > 0 || !moves)) return;
+  const double speed =
+      speed_in_contact(c.flow, plan.step_s, cost.mean_count, threads) * (poured ? poured_to_resting : 1);
+  const double steps = cost.heat_steps * static_cast<double>(plan.steps_per_tick);
+  const double flow_s = speed > 0 ? cost.mean_count * steps / speed : 0;
+  if (flow_s > cost.flow_s) cost.flow_s = flow_s, cost.speed_in_contact = speed;
+}
+
 }  // namespace
 
 Forecast forecast(const Case& c, Simulation& simulation, int threads) {
   Forecast cost;
   const TimePlan& plan = simulation.plan();
   const Bed& bed = simulation.bed();
-  const double ticks = static_cast<double>(plan.end_tick), count = mean_count(c, bed);
-  const bool moves = c.flow.engine != EngineKind::none;
-  cost.heat_steps = ticks, cost.mean_count = count;
+  cost.heat_steps = static_cast<double>(plan.end_tick), cost.mean_count = mean_count(c, bed);
   cost.threads = threads > 0 ? threads : omp_get_max_threads();
-  if (plan.ticks_per_radiation > 0) {
-    const double updates = std::ceil(ticks / static_cast<double>(plan.ticks_per_radiation));
-    const double made_anew = moves ? updates : 1;
-    cost.radiation_updates = moves || c.heat.radiation.kind == RadiationKind::paths ? updates : 1;
-    const double times = made_anew * (bed.size() > 0 ? count / static_cast<double>(bed.size()) : 1);
-    const UpdateSeconds update = seconds_of_an_update(c, bed, threads);
-    const double later =
-        moves || bed.size() == 0 ? 0 : (updates - 1) * seconds_of_a_later_update(c, bed, threads);
-    cost.radiation_s = update.all * times + later;
-    const bool walks = c.heat.radiation.kind == RadiationKind::paths;  // ranks share them
-    cost.radiation_repeated_s = update.repeated * times + (walks ? 0 : later);
-  }
+  foresee_radiation(c, bed, plan, threads, cost);
+  const bool moves = c.flow.engine != EngineKind::none;
   const double expected_tick_s = static_cast<double>(bed.size()) *
                                  static_cast<double>(moves ? plan.steps_per_tick : 1) /
                                  usual_particle_steps_s;
-  if (bed.size() > 0 && expected_tick_s < 2 * trial_s) {
-    Case still = c;  // conduction and flow alone
-    still.heat.radiation.kind = RadiationKind::none;
-    Simulation trial(still, threads);
-    trial.start();
-    trial.advance();  // lists are made, threads started
-    std::vector<double> flow, conduction;
-    for (const double start = monotonic_s(); monotonic_s() - start < trial_s && !trial.finished();) {
-      const PartSeconds before = trial.seconds();
-      trial.advance();
-      flow.push_back(trial.seconds().flow - before.flow);
-      conduction.push_back(trial.seconds().conduction - before.conduction);
-    }
-    if (flow.empty()) return cost;
-    const double more = ticks * count / static_cast<double>(bed.size());
-    cost.flow_s = undisturbed_mean(flow) * more * plan.tick_s / trial.plan().tick_s;
-    cost.conduction_s = undisturbed_mean(conduction) * more;
-  }
-  const bool poured = c.flow.feed.kind == FeedSettings::Kind::hopper && norm(c.flow.gravity_m_s2) > 0;
-  if (poured || (cost.flow_s == 0 && moves)) {
-    const double speed =
-        speed_in_contact(c.flow, plan.step_s, count, threads) * (poured ? poured_to_resting : 1);
-    const double in_contact_s =
-        speed > 0 ? count * ticks * static_cast<double>(plan.steps_per_tick) / speed : 0;
-    if (in_contact_s > cost.flow_s) cost.flow_s = in_contact_s, cost.speed_in_contact = speed;
-  }
-  cost.frames = std::ceil(ticks / static_cast<double>(plan.ticks_per_frame)) + 1;
-  cost.frame_bytes = 6e4 + frame_bytes_per_particle * count;
+  if (bed.size() > 0 && expected_tick_s < 2 * trial_s) try_flow_and_conduction(c, bed, plan, threads, cost);
+  foresee_flow_in_contact(c, plan, threads, cost);
+  cost.frames = std::ceil(cost.heat_steps / static_cast<double>(plan.ticks_per_frame)) + 1;
+  cost.frame_bytes = 6e4 + frame_bytes_per_particle * cost.mean_count;
   cost.output_s = cost.frames * (frame_s + cost.frame_bytes / disk_bytes_s) +
-                  row_s * ticks / static_cast<double>(plan.ticks_per_row);
-  cost.memory_bytes = 6e7 + bytes_per_particle * count;
+                  row_s * cost.heat_steps / static_cast<double>(plan.ticks_per_row);
+  cost.memory_bytes = 6e7 + bytes_per_particle * cost.mean_count;
   return cost;
 }
 
